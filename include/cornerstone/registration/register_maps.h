@@ -1,0 +1,41 @@
+// The transform between two robots' maps (paper, section 4, and beyond it), or a refusal.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cornerstone/base/params.h"
+#include "cornerstone/landmarks/detect_corners.h"
+#include "cornerstone/mapping/grid_map.h"
+
+namespace cornerstone {
+
+struct RegistrationParams {
+  double match_distance_m = 1.0;  // paper: corners farther apart than 1000 mm are not paired
+  // (the owner of this area adds the rest, each with unit and reason)
+};
+void describe(ParamVisitor& visitor, RegistrationParams& params);
+
+struct MapView {  // what is known of one robot's map; both must outlive the call
+  const GridMap& map;
+  const Landmarks& landmarks;
+};
+
+struct Registration {
+  Pose2 reference_from_current;                          // pose of the current map's frame in the reference map's
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // (x, y, yaw), m and rad
+  std::vector<std::pair<int, int>> matches;              // indices (reference corner, current corner)
+  double rms_m = 0;                                      // of the matched edges after refinement
+  double overlap = 0;      // share of the current map's known cells that the reference map knows
+  double second_best = 0;  // score of the best different pose over this one's: near 1 is ambiguous
+};
+
+// prior: rough reference_from_current (a shared start, odometry); empty: any pose is possible.
+// Empty result: the evidence does not single out one pose. `refusal`, where given, says why in words.
+std::optional<Registration> registerMaps(const MapView& reference, const MapView& current,
+                                         const std::optional<Pose2>& prior, const RegistrationParams& params,
+                                         std::string* refusal = nullptr);
+
+}  // namespace cornerstone

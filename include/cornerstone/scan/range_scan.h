@@ -1,0 +1,27 @@
+// One look of a range sensor in the plane: a beam per image column (or laser ray), in the sensor's planar frame.
+// A beam without an answer says nothing at all: it is never "free to the end".
+#pragma once
+
+#include <vector>
+
+#include "cornerstone/base/pose2.h"
+
+namespace cornerstone {
+
+struct Beam {
+  double bearing_rad = 0;  // in the sensor's planar frame: x forward, counter-clockwise
+  double width_rad = 0;    // angle between the beam's edges
+  bool hit = false;        // false: no answer, the fields below are 0
+  double range_m = 0;      // to the obstacle, along the bearing
+  double near_m = 0;       // interval of uncertainty around range_m: design of the paper's Fig. 2e
+  double far_m = 0;
+  double sigma_m = 0;      // standard deviation of range_m
+  double clear_m = 0;      // free up to here, <= near_m
+};
+
+struct RangeScan {
+  Pose2 base_from_sensor;
+  std::vector<Beam> beams;
+};
+
+}  // namespace cornerstone

@@ -1,0 +1,29 @@
+// What stereo knows of one view: a disparity for each reference pixel it is sure of, and why not for the others.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "cornerstone/stereo/trinocular_rig.h"
+
+namespace cornerstone {
+
+// Why a pixel has no answer; the values are those of the `rejections` image.
+enum class Rejection : std::uint8_t {
+  kNone = 0,        // the pixel has an answer
+  kOutside = 1,     // no secondary camera sees it at any disparity searched
+  kTexture = 2,     // nothing to correlate
+  kUniqueness = 3,  // another disparity matches nearly as well
+  kLeftRight = 4,   // a secondary view's best answer is another one
+  kSurface = 5,     // part of a surface too small to be real (spikes: paper, section 2.1)
+  kRange = 6,       // best at the end of the searched range
+};
+
+struct Disparity {
+  cv::Mat1f disparity_px;  // > 0; 0: no answer
+  cv::Mat1f sigma_px;      // standard deviation of the answer; 0 where there is none
+  cv::Mat1b rejection;     // Rejection
+  TrinocularRig rig;
+};
+
+}  // namespace cornerstone
