@@ -61,13 +61,14 @@ Eigen::Vector2d project(const Eigen::Vector3d& point_m, const Eigen::Isometry3d&
 
 class RendererTest : public testing::Test {
  protected:
+  // 8: edges fall on whole samples, so that they are exact to 1/16 px only.
   static RendererSetup setup() {
     const RigParams rig;
     return {{rig.width_px, rig.height_px},
             focalLength(rig),
             (rig.width_px - 1) / 2.0,
             (rig.height_px - 1) / 2.0,
-            4};
+            8};
   }
   World world_ = parseWorld(kHall, "hall", ".");
   Renderer renderer_{world_, {}, setup()};
