@@ -10,8 +10,6 @@
 namespace cornerstone {
 namespace {
 
-// An empty hall with one dark board of 0.2 m x 0.3 m, standing 2 m before the origin, its centre at y = 0.3,
-// z = 0.5.
 const char* kHall = R"(
 name: hall
 seed: 3
@@ -19,38 +17,40 @@ extent_m: [-9, -9, 9, 9]
 ceiling_m: 3
 walls:
   - {points_m: [[4, -8], [4, 8]], height_m: 3, thickness_m: 0.2, material: paint}
-boxes:
-  - {at_m: [2.01, 0.3], yaw_deg: 0, size_m: [0.02, 0.2, 0.3], z_m: 0.65, material: metal}
 robots: []
 )";
+
+// A board of 0.2 m x 0.3 m without thickness, 2 m before the origin, its centre at y = 0.3, z = 0.8.
+MovingBody board() { return {boxSolid({{0, 0}, 0, {1e-4, 0.2, 0.3}, 0.65, Material::kMetal})}; }
 
 struct Edges {
   double left, right, top, bottom;
 };
 
-// A pixel that an edge crosses is darkened by the share of its area that is dark: the sum of these shares
-// across the edge tells where it lies, to a fraction of a pixel. `outside` and `inside` are 3 px from it;
-// pixels count from their centres.
-double edgeBetween(const cv::Mat1f& profile, int outside, int inside) {
-  const double bright = profile(outside), dark = profile(inside);
+// A pixel that an edge crosses shows the board by the share of its area that is covered: the sum of these
+// shares, up to a pixel `inside`, tells where the edge lies to a fraction of a pixel. Pixels count from their
+// centres.
+double edgeBefore(const cv::Mat1f& with, const cv::Mat1f& without, int inside, int direction) {
   double shares = 0;
-  for (int i = std::min(outside, inside); i <= std::max(outside, inside); ++i)
-    shares += std::clamp((profile(i) - dark) / (bright - dark), 0.0, 1.0);
-  return outside < inside ? outside - 0.5 + shares : outside + 0.5 - shares;
+  for (int i = inside + 3 * direction; i != inside; i -= direction)
+    shares += (with(i) - without(i)) / (with(inside) - without(i));
+  return inside + direction * (0.5 + shares);
 }
 
-Edges edgesOf(const cv::Mat1f& image) {
-  cv::Mat1b dark;
-  cv::compare(image, 125, dark, cv::CMP_LT);
-  // Between skirting and ceiling there is nothing dark but the board.
-  dark.rowRange(62, dark.rows).setTo(0);
-  const cv::Rect box = cv::boundingRect(dark);
-  const cv::Rect middle(box.x + 2, box.y + 2, box.width - 4, box.height - 4);
-  cv::Mat1f along_x, along_y;
-  cv::reduce(image.rowRange(middle.y, middle.br().y), along_x, 0, cv::REDUCE_AVG);
-  cv::reduce(image.colRange(middle.x, middle.br().x), along_y, 1, cv::REDUCE_AVG);
-  return {edgeBetween(along_x, box.x - 3, box.x + 2), edgeBetween(along_x, box.br().x + 2, box.br().x - 3),
-          edgeBetween(along_y, box.y - 3, box.y + 2), edgeBetween(along_y, box.br().y + 2, box.br().y - 3)};
+Edges edgesOf(const cv::Mat1f& with, const cv::Mat1f& without) {
+  cv::Mat1f change;
+  cv::absdiff(with, without, change);
+  cv::Mat1b changed;
+  cv::compare(change, 20, changed, cv::CMP_GT);
+  const cv::Rect box = cv::boundingRect(changed);
+  const cv::Range rows(box.y + 3, box.br().y - 3), cols(box.x + 3, box.br().x - 3);
+  cv::Mat1f x_with, x_without, y_with, y_without;
+  cv::reduce(with.rowRange(rows), x_with, 0, cv::REDUCE_AVG);
+  cv::reduce(without.rowRange(rows), x_without, 0, cv::REDUCE_AVG);
+  cv::reduce(with.colRange(cols), y_with, 1, cv::REDUCE_AVG);
+  cv::reduce(without.colRange(cols), y_without, 1, cv::REDUCE_AVG);
+  return {edgeBefore(x_with, x_without, box.x + 1, -1), edgeBefore(x_with, x_without, box.br().x - 2, 1),
+          edgeBefore(y_with, y_without, box.y + 1, -1), edgeBefore(y_with, y_without, box.br().y - 2, 1)};
 }
 
 Eigen::Vector2d project(const Eigen::Vector3d& point_m, const Eigen::Isometry3d& world_from_camera,
@@ -70,15 +70,22 @@ class RendererTest : public testing::Test {
             (rig.height_px - 1) / 2.0,
             8};
   }
+  RendererTest() { renderer_.place(0, {2, 0.3, 0}); }
+  Edges boardSeenBy(std::size_t camera) {
+    renderer_.show(0, true);
+    const cv::Mat1f with = renderer_.render(cameras_[camera]);
+    renderer_.show(0, false);
+    return edgesOf(with, renderer_.render(cameras_[camera]));
+  }
   World world_ = parseWorld(kHall, "hall", ".");
-  Renderer renderer_{world_, {}, setup()};
+  Renderer renderer_{world_, {board()}, setup()};
   std::array<Eigen::Isometry3d, kCameraCount> cameras_ = baseFromCameras(RigParams{});
   std::array<CameraCalibration, kCameraCount> calibrations_ = calibrationsOf(RigParams{});
 };
 
 TEST_F(RendererTest, KnownPointsLieWhereThePinholeProjectsThem) {
   for (std::size_t camera = 0; camera < kCameraCount; ++camera) {
-    const Edges edges = edgesOf(renderer_.render(cameras_[camera]));
+    const Edges edges = boardSeenBy(camera);
     const Eigen::Vector2d top_left = project({2, 0.4, 0.95}, cameras_[camera], calibrations_[camera]);
     const Eigen::Vector2d bottom_right = project({2, 0.2, 0.65}, cameras_[camera], calibrations_[camera]);
     EXPECT_NEAR(edges.left, top_left.x(), 0.1) << kCameraNames[camera];
@@ -91,9 +98,9 @@ TEST_F(RendererTest, KnownPointsLieWhereThePinholeProjectsThem) {
 // f = 80 px, B = 0.12 m, Z = 2 m: d = 4.8 px. Right sees a reference pixel (x, y) at (x - d, y), top at (x, y
 // + d).
 TEST_F(RendererTest, DisparityIsFocalLengthTimesBaselineOverRange) {
-  const Edges reference = edgesOf(renderer_.render(cameras_[0]));
-  const Edges right = edgesOf(renderer_.render(cameras_[1]));
-  const Edges top = edgesOf(renderer_.render(cameras_[2]));
+  const Edges reference = boardSeenBy(0);
+  const Edges right = boardSeenBy(1);
+  const Edges top = boardSeenBy(2);
   EXPECT_NEAR(reference.left - right.left, 4.8, 0.1);
   EXPECT_NEAR(reference.right - right.right, 4.8, 0.1);
   EXPECT_NEAR(reference.top - right.top, 0, 0.1);
