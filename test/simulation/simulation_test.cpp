@@ -89,6 +89,24 @@ TEST(Simulation, ACommandedRobotStopsAtTheWallAndCountsTheTouchOnce) {
   EXPECT_THROW(simulation.command("a", {std::nan(""), 0}), InputError);
 }
 
+TEST(Simulation, RobotsAndMoversAreSeen) {
+  // Robot a looks along +x; a mover crosses its view at x = 1 between 0 s and 1 s.
+  const std::string mover =
+      "movers: [{name: m, size_m: [0.3, 0.3, 1.5], material: books, path_s_m_m: [[0, 1, -1], [1, 1, 0], [9, "
+      "1, -1]]}]";
+  SimulationParams params;
+  params.cameras.noise_grey = 0;
+  params.follow_routes = false;
+  Simulation simulation(parseWorld(std::string(kRoom) + mover, "room", "."), params);
+  const cv::Mat1b before = simulation.frames()[0].images[0];
+  for (int i = 0; i < simulation.params().steps_per_second; ++i) simulation.step();
+  cv::Mat1b change;
+  cv::absdiff(before, simulation.frames()[0].images[0], change);
+  // 0.3 m at 1.85 m: 13 px beside the image's centre.
+  EXPECT_GT(cv::mean(change(cv::Rect(76, 45, 8, 20)))[0], 10);
+  EXPECT_LT(cv::mean(change(cv::Rect(20, 45, 20, 20)))[0], 1);
+}
+
 TEST(Simulation, FramesAreDroppedAtRandom) {
   SimulationParams params;
   params.supersampling = 1;
