@@ -100,8 +100,9 @@ Simulation::Simulation(const World& world, const SimulationParams& params)
   for (const Mover& mover : world.movers) bodies.push_back({moverBody(mover)});
   const double centre_x = (params.rig.width_px - 1) / 2.0, centre_y = (params.rig.height_px - 1) / 2.0;
   const cv::Size size(params.rig.width_px, params.rig.height_px);
+  world_.seed = seedFor(params.seed, world.seed);
   renderer_ = std::make_unique<Renderer>(
-      world, bodies, RendererSetup{size, focalLength(params.rig), centre_x, centre_y, params.supersampling});
+      world_, bodies, RendererSetup{size, focalLength(params.rig), centre_x, centre_y, params.supersampling});
 }
 
 Simulation::~Simulation() = default;
@@ -114,7 +115,7 @@ std::vector<std::string> Simulation::robotNames() const {
 
 void Simulation::step() {
   for (Robot& robot : robots_) {
-    if (params_.follow_routes)
+    if (params_.follow_routes && !held_)
       robot.vehicle.command(
           robot.driver.drive(robot.vehicle.worldFromBase(), robot.vehicle.twist(), time_s()), time_s());
     const Pose2 before = robot.vehicle.worldFromBase();

@@ -22,7 +22,7 @@ struct RigParams {
   double field_of_view_rad = 1.5707963267948966;  // horizontal, whole angle (paper: 90 degrees)
   double baseline_m = 0.12;                       // reference to right and reference to top
   double height_m = 0.4;                          // of the reference camera above the floor
-  double forward_m = 0.1;                         // of the cameras before the base's origin
+  double forward_m = 0.0;                         // of the cameras before the base's origin
   double pitch_rad = 0;                           // downwards positive
 };
 void describe(ParamVisitor& visitor, RigParams& params);

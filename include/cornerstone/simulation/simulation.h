@@ -16,7 +16,7 @@
 namespace cornerstone {
 
 struct SimulationParams {
-  int seed = 1;                     // of every fault; the world's own seed makes its textures
+  int seed = 1;                     // of every fault, and with the world's own seed of its textures
   int steps_per_second = 50;        // of the motion
   int steps_per_frame = 5;          // motion steps between two image triples: 10 Hz
   int supersampling = 3;            // see Renderer
@@ -54,6 +54,8 @@ class Simulation {
   std::vector<RobotFrame> frames(bool with_images = true);
 
   void command(const std::string& robot, const Twist2& twist);
+  // Scripted robots wait at their starts while held.
+  void holdRoutes(bool held) { held_ = held; }
   double time_s() const { return double(steps_) / params_.steps_per_second; }
   double step_s() const { return 1.0 / params_.steps_per_second; }
   bool routesDone() const;
@@ -72,6 +74,7 @@ class Simulation {
   std::vector<Robot> robots_;
   std::unique_ptr<Renderer> renderer_;
   long steps_ = 0;
+  bool held_ = false;
 };
 
 // The body of a robot or mover as others see it: an upright prism around its own origin.
