@@ -15,7 +15,8 @@ TileMap::TileMap(double resolution_m, int tile_cells) : resolution_m_(resolution
 void TileMap::put(int col, int row, const cv::Mat1f& occupied) {
   if (occupied.rows != tile_cells_ || occupied.cols != tile_cells_)
     throw InputError("tiles: a tile of another size");
-  if (col % tile_cells_ != 0 || row % tile_cells_ != 0) throw InputError("tiles: a tile between the places of tiles");
+  if (col % tile_cells_ != 0 || row % tile_cells_ != 0)
+    throw InputError("tiles: a tile between the places of tiles");
   tiles_[{row / tile_cells_, col / tile_cells_}] = occupied.clone();
 }
 

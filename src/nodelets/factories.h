@@ -1,5 +1,5 @@
-// The nodelets by name, for the stand-alone nodes that link them directly (pluginlib finds a nodelet only through the
-// environment's CMAKE_PREFIX_PATH, which is lost under systemd or ssh).
+// The nodelets by name, for the stand-alone nodes that link them directly (pluginlib finds a nodelet only
+// through the environment's CMAKE_PREFIX_PATH, which is lost under systemd or ssh).
 #pragma once
 
 #include <nodelet/nodelet.h>

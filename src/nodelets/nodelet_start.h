@@ -1,4 +1,5 @@
-// How every nodelet starts: a bad configuration stops the start with its name, and nothing half-started stays behind.
+// How every nodelet starts: a bad configuration stops the start with its name, and nothing half-started stays
+// behind.
 #pragma once
 
 #include <nodelet/nodelet.h>
@@ -9,8 +10,8 @@
 
 namespace cornerstone {
 
-// Runs `start`; on any exception it says what is wrong and throws on, so that the nodelet manager unloads the nodelet
-// and the load request fails.
+// Runs `start`; on any exception it says what is wrong and throws on, so that the nodelet manager unloads the
+// nodelet and the load request fails.
 inline void startOrRefuse(const std::string& name, const std::function<void()>& start) {
   try {
     start();

@@ -1,13 +1,13 @@
 // Ranges and odometry in, a map and the drift of the odometry out. Takes disparity (with disparity_sigma and
-// reference/camera_info), depth (with camera_info) or scan, and tf; gives map, map_updates, map_metadata, map_tiles,
-// stereo_scan, tf map -> odom; services save_map, load_map, static_map, reset.
+// reference/camera_info), depth (with camera_info) or scan, and tf; gives map, map_updates, map_metadata,
+// map_tiles, stereo_scan, tf map -> odom; services save_map, load_map, static_map, reset.
 #include <message_filters/subscriber.h>
 #include <message_filters/time_synchronizer.h>
 #include <nav_msgs/GetMap.h>
-#include <pluginlib/class_list_macros.hpp>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
+#include <pluginlib/class_list_macros.hpp>
 
 #include <boost/bind/bind.hpp>
 #include <optional>
@@ -44,7 +44,8 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     requireWithin(params_.disparity_sigma_px, 0, 10, "parameter 'disparity_sigma_px'");
     mapper_.emplace(params_.mapper);
     diagnostics_.emplace(node, getPrivateNodeHandle(), "mapper");
-    pending_.emplace(params_.tf_timeout_s, [this](const std::string& cause) { diagnostics_->dropped(cause); });
+    pending_.emplace(params_.tf_timeout_s,
+                     [this](const std::string& cause) { diagnostics_->dropped(cause); });
     tf_listener_.emplace(tf_buffer_);
     map_publisher_.emplace(node, params_.robot, params_.frames.map);
     scan_publisher_ = node.advertise<sensor_msgs::LaserScan>("stereo_scan", 1);
@@ -52,7 +53,8 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     serve(node);
     publish_timer_ = node.createTimer(ros::Duration(params_.publish_period_s),
                                       [this](const ros::TimerEvent&) { map_publisher_->publish(*mapper_); });
-    tf_timer_ = node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { tick(); });
+    tf_timer_ =
+        node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { tick(); });
   }
 
   void subscribe(ros::NodeHandle& node) {
@@ -61,7 +63,8 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
       info_subscriber_ = node.subscribe("reference/camera_info", 1, &OccupancyMapperNodelet::takeInfo, this);
       if (params_.disparity_sigma_px > 0) {
         range_subscriber_ = node.subscribe<stereo_msgs::DisparityImage>(
-            "disparity", 5, [this](const stereo_msgs::DisparityImageConstPtr& m) { takeDisparity(m, nullptr); });
+            "disparity", 5,
+            [this](const stereo_msgs::DisparityImageConstPtr& m) { takeDisparity(m, nullptr); });
         return;
       }
       disparities_.subscribe(node, "disparity", 5);
@@ -87,14 +90,16 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
 
   void takeInfo(const sensor_msgs::CameraInfoConstPtr& info) { info_ = info; }
 
-  void takeDisparity(const stereo_msgs::DisparityImageConstPtr& message, const sensor_msgs::ImageConstPtr& sigma) {
+  void takeDisparity(const stereo_msgs::DisparityImageConstPtr& message,
+                     const sensor_msgs::ImageConstPtr& sigma) {
     takeRanges(message->header, [&](const Eigen::Isometry3d& base_from_sensor) {
       if (!info_) throw InputError("reference/camera_info: none received yet");
       const cv::Mat1f sigma_px =
           sigma ? floatImage(*sigma, "disparity_sigma")
                 : cv::Mat1f(static_cast<int>(message->image.height), static_cast<int>(message->image.width),
                             static_cast<float>(params_.disparity_sigma_px));
-      return scanFromDisparity(fromDisparityImage(*message, *info_, sigma_px), base_from_sensor, params_.scan);
+      return scanFromDisparity(fromDisparityImage(*message, *info_, sigma_px), base_from_sensor,
+                               params_.scan);
     });
   }
 
@@ -111,7 +116,8 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     });
   }
 
-  // What all kinds of ranges share: mounting, order, waiting for odometry. A message at fault is counted and left out.
+  // What all kinds of ranges share: mounting, order, waiting for odometry. A message at fault is counted and
+  // left out.
   void takeRanges(const std_msgs::Header& header,
                   const std::function<RangeScan(const Eigen::Isometry3d& base_from_sensor)>& convert) {
     try {
@@ -128,8 +134,9 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
   }
 
   void release() {
-    pending_->release(tf_buffer_, params_.frames.odom, params_.frames.base,
-                      [this](const PendingScan& pending, const Pose2& odom_from_base) { map(pending, odom_from_base); });
+    pending_->release(
+        tf_buffer_, params_.frames.odom, params_.frames.base,
+        [this](const PendingScan& pending, const Pose2& odom_from_base) { map(pending, odom_from_base); });
   }
 
   void map(const PendingScan& pending, const Pose2& odom_from_base) {
@@ -153,7 +160,8 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     const ros::Time now = ros::Time::now();
     if (now <= last_broadcast_) return;
     last_broadcast_ = now;
-    broadcaster_.sendTransform(toStamped(mapper_->mapFromOdom(), params_.frames.map, params_.frames.odom, now));
+    broadcaster_.sendTransform(
+        toStamped(mapper_->mapFromOdom(), params_.frames.map, params_.frames.odom, now));
   }
 
   void beginAnew(const std::string& reason) {

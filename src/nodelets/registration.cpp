@@ -1,7 +1,8 @@
-// This robot's landmarks, and the pose of its map in the reference robot's map. Takes map_tiles of both robots; gives
-// landmarks, landmark_markers, registration, match_markers, merged_map and, while registered, the tf between the maps.
-#include <pluginlib/class_list_macros.hpp>
+// This robot's landmarks, and the pose of its map in the reference robot's map. Takes map_tiles of both
+// robots; gives landmarks, landmark_markers, registration, match_markers, merged_map and, while registered,
+// the tf between the maps.
 #include <tf2_ros/transform_broadcaster.h>
+#include <pluginlib/class_list_macros.hpp>
 
 #include <optional>
 #include <utility>
@@ -64,7 +65,8 @@ class RegistrationNodelet : public nodelet::Nodelet {
     markers_publisher_ = node.advertise<visualization_msgs::MarkerArray>("landmark_markers", 1, true);
     follow(own_, node.resolveName("map_tiles"));
     if (registers_) startRegistering(node);
-    attempt_timer_ = node.createTimer(ros::Duration(params_.period_s), [this](const ros::TimerEvent&) { attempt(); });
+    attempt_timer_ =
+        node.createTimer(ros::Duration(params_.period_s), [this](const ros::TimerEvent&) { attempt(); });
   }
 
   void startRegistering(ros::NodeHandle& node) {
@@ -75,12 +77,13 @@ class RegistrationNodelet : public nodelet::Nodelet {
     const std::string beside = ros::names::parentNamespace(node.getNamespace());
     follow(reference_, ros::names::append(beside, params_.reference_robot + "/map_tiles"));
     broadcaster_.emplace();
-    tf_timer_ = node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { broadcast(); });
+    tf_timer_ =
+        node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { broadcast(); });
   }
 
   void follow(RobotMap& robot, const std::string& topic) {
-    robot.subscriber = getNodeHandle().subscribe<MapTiles>(
-        topic, 100, [this, &robot, topic](const MapTilesConstPtr& tiles) {
+    robot.subscriber =
+        getNodeHandle().subscribe<MapTiles>(topic, 100, [this, &robot, topic](const MapTilesConstPtr& tiles) {
           try {
             if (robot.tiles.take(*tiles)) tracker_->lose(topic + ": the map began anew");
           } catch (const InputError& error) {
@@ -103,7 +106,8 @@ class RegistrationNodelet : public nodelet::Nodelet {
 
   void registerOnce() {
     std::optional<Pose2> prior;
-    if (tracker_->state() == RegistrationState::kRegistered) prior = tracker_->estimate()->reference_from_current;
+    if (tracker_->state() == RegistrationState::kRegistered)
+      prior = tracker_->estimate()->reference_from_current;
     refusal_.clear();
     auto answer = registerMaps(reference_.view(), own_.view(), prior, params_.registration, &refusal_);
     // Where the known frame no longer holds, the maps may say where the truth lies: that is a contradiction.
@@ -153,7 +157,8 @@ class RegistrationNodelet : public nodelet::Nodelet {
     reference_corners_.clear();
     current_corners_.clear();
     for (const auto& [reference, current] : answer.matches) {
-      reference_corners_.push_back(toMessage(reference_.landmarks.corners.at(static_cast<std::size_t>(reference))));
+      reference_corners_.push_back(
+          toMessage(reference_.landmarks.corners.at(static_cast<std::size_t>(reference))));
       current_corners_.push_back(toMessage(own_.landmarks.corners.at(static_cast<std::size_t>(current))));
     }
   }
@@ -162,8 +167,8 @@ class RegistrationNodelet : public nodelet::Nodelet {
     const ros::Time now = ros::Time::now();
     if (tracker_->state() != RegistrationState::kRegistered || now <= last_broadcast_) return;
     last_broadcast_ = now;
-    broadcaster_->sendTransform(toStamped(tracker_->estimate()->reference_from_current, params_.reference_map_frame,
-                                          params_.frames.map, now));
+    broadcaster_->sendTransform(toStamped(tracker_->estimate()->reference_from_current,
+                                          params_.reference_map_frame, params_.frames.map, now));
   }
 
   RegistrationNodeletParams params_;

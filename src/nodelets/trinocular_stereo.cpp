@@ -1,10 +1,10 @@
-// Images of two or three cameras in, disparity out. Takes {reference,right,top}/{image_rect or image_raw, camera_info};
-// gives disparity, disparity_sigma, rejections.
+// Images of two or three cameras in, disparity out. Takes {reference,right,top}/{image_rect or image_raw,
+// camera_info}; gives disparity, disparity_sigma, rejections.
 #include <image_transport/subscriber_filter.h>
 #include <message_filters/sync_policies/approximate_time.h>
 #include <message_filters/synchronizer.h>
-#include <pluginlib/class_list_macros.hpp>
 #include <sensor_msgs/image_encodings.h>
+#include <pluginlib/class_list_macros.hpp>
 
 #include <array>
 #include <boost/bind/bind.hpp>
@@ -25,8 +25,8 @@ namespace {
 
 using sensor_msgs::ImageConstPtr;
 using TwoImages = message_filters::sync_policies::ApproximateTime<sensor_msgs::Image, sensor_msgs::Image>;
-using ThreeImages =
-    message_filters::sync_policies::ApproximateTime<sensor_msgs::Image, sensor_msgs::Image, sensor_msgs::Image>;
+using ThreeImages = message_filters::sync_policies::ApproximateTime<sensor_msgs::Image, sensor_msgs::Image,
+                                                                    sensor_msgs::Image>;
 
 constexpr std::array<const char*, 3> kCameras{"reference", "right", "top"};
 
@@ -86,7 +86,8 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     } else {
       two_.emplace(TwoImages(queue), cameras_[0].images, cameras_[1].images);
       two_->setMaxIntervalDuration(ros::Duration(params_.sync_tolerance_s));
-      two_->registerCallback(boost::bind(&TrinocularStereoNodelet::take, this, p::_1, p::_2, ImageConstPtr()));
+      two_->registerCallback(
+          boost::bind(&TrinocularStereoNodelet::take, this, p::_1, p::_2, ImageConstPtr()));
     }
   }
 
@@ -171,7 +172,9 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   ros::Publisher rejections_publisher_;
 };
 
-std::unique_ptr<nodelet::Nodelet> makeTrinocularStereo() { return std::make_unique<TrinocularStereoNodelet>(); }
+std::unique_ptr<nodelet::Nodelet> makeTrinocularStereo() {
+  return std::make_unique<TrinocularStereoNodelet>();
+}
 
 }  // namespace cornerstone
 

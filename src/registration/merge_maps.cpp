@@ -31,7 +31,8 @@ float valueAt(const GridMap& map, const Eigen::Vector2d& point_m) {
   return map.geometry.contains(cell) ? map.occupied(cell.row, cell.col) : kUnseen;
 }
 
-// Adds the log-odds of two probabilities; 0 and 1 are held just inside, so that certainty can still be outvoted.
+// Adds the log-odds of two probabilities; 0 and 1 are held just inside, so that certainty can still be
+// outvoted.
 float combine(float a, float b) {
   if (a == kUnseen) return b;
   if (b == kUnseen) return a;

@@ -6,7 +6,8 @@
 
 namespace cornerstone {
 
-StageDiagnostics::StageDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& stage)
+StageDiagnostics::StageDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node,
+                                   const std::string& stage)
     : name_(private_node.getNamespace()), updater_(node, private_node, name_) {
   updater_.setHardwareID("none");
   updater_.add(stage, this, &StageDiagnostics::report);

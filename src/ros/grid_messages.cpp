@@ -45,7 +45,8 @@ nav_msgs::OccupancyGrid toOccupancyGrid(const GridMap& map, const std_msgs::Head
   return grid;
 }
 
-map_msgs::OccupancyGridUpdate toUpdate(const GridMap& map, const cv::Rect& cells, const std_msgs::Header& header) {
+map_msgs::OccupancyGridUpdate toUpdate(const GridMap& map, const cv::Rect& cells,
+                                       const std_msgs::Header& header) {
   map_msgs::OccupancyGridUpdate update;
   update.header = header;
   update.x = cells.x;

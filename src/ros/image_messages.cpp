@@ -4,6 +4,7 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
 
 #include "cornerstone/base/errors.h"
 
@@ -16,7 +17,8 @@ cv::Mat1b toGrey(const sensor_msgs::ImageConstPtr& image, const std::string& top
   try {
     return cv_bridge::toCvShare(image, sensor_msgs::image_encodings::MONO8)->image;
   } catch (const std::exception& error) {
-    throw InputError(topic + ": encoding '" + image->encoding + "' is no image that turns grey: " + error.what());
+    throw InputError(topic + ": encoding '" + image->encoding +
+                     "' is no image that turns grey: " + error.what());
   }
 }
 
@@ -47,7 +49,8 @@ sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const
   return info;
 }
 
-sensor_msgs::ImagePtr toImage(const cv::Mat& image, const std::string& encoding, const std_msgs::Header& header) {
+sensor_msgs::ImagePtr toImage(const cv::Mat& image, const std::string& encoding,
+                              const std_msgs::Header& header) {
   return cv_bridge::CvImage(header, encoding, image).toImageMsg();
 }
 
@@ -87,7 +90,8 @@ Disparity fromDisparityImage(const stereo_msgs::DisparityImage& message, const s
   // Other stereo nodes mark missing answers by values below min_disparity or by NaN.
   disparity.disparity_px.setTo(0, ~(disparity.disparity_px > std::max(0.f, message.min_disparity)));
   disparity.sigma_px = sigma_px;
-  if (sigma_px.size() != disparity.disparity_px.size()) throw InputError("disparity_sigma: its size is not disparity's");
+  if (sigma_px.size() != disparity.disparity_px.size())
+    throw InputError("disparity_sigma: its size is not disparity's");
   disparity.rig.image_size_px = disparity.disparity_px.size();
   disparity.rig.focal_px = message.f;
   disparity.rig.baseline_m = message.T;

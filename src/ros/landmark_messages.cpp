@@ -11,7 +11,8 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double kLineWidth_m = 0.04;  // thinner than a cell of 0.05 m, still seen in rviz at a building's scale
+constexpr double kLineWidth_m =
+    0.04;  // thinner than a cell of 0.05 m, still seen in rviz at a building's scale
 
 std_msgs::ColorRGBA colour(float red, float green, float blue) {
   std_msgs::ColorRGBA rgba;
@@ -44,10 +45,14 @@ geometry_msgs::Point point(const Eigen::Vector2d& place_m, double height_m) {
 
 std::uint8_t toState(RegistrationState state) {
   switch (state) {
-    case RegistrationState::kCandidate: return MapRegistration::CANDIDATE;
-    case RegistrationState::kRegistered: return MapRegistration::REGISTERED;
-    case RegistrationState::kLost: return MapRegistration::LOST;
-    default: return MapRegistration::NONE;
+    case RegistrationState::kCandidate:
+      return MapRegistration::CANDIDATE;
+    case RegistrationState::kRegistered:
+      return MapRegistration::REGISTERED;
+    case RegistrationState::kLost:
+      return MapRegistration::LOST;
+    default:
+      return MapRegistration::NONE;
   }
 }
 

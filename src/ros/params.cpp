@@ -7,10 +7,14 @@ namespace {
 
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
-    case XmlRpc::XmlRpcValue::TypeBoolean: return YAML::Node(static_cast<bool>(value));
-    case XmlRpc::XmlRpcValue::TypeInt: return YAML::Node(static_cast<int>(value));
-    case XmlRpc::XmlRpcValue::TypeDouble: return YAML::Node(static_cast<double>(value));
-    case XmlRpc::XmlRpcValue::TypeString: return YAML::Node(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value));
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return YAML::Node(static_cast<int>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return YAML::Node(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeString:
+      return YAML::Node(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeArray: {
       YAML::Node list(YAML::NodeType::Sequence);
       for (int i = 0; i < value.size(); ++i) list.push_back(toYaml(value[i]));
@@ -21,7 +25,8 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
       for (auto& member : value) map[member.first] = toYaml(member.second);
       return map;
     }
-    default: return {};
+    default:
+      return {};
   }
 }
 
@@ -31,7 +36,8 @@ YAML::Node loadParamTree(const ros::NodeHandle& private_node) {
   XmlRpc::XmlRpcValue tree;
   if (!private_node.getParam(private_node.getNamespace(), tree) ||
       tree.getType() != XmlRpc::XmlRpcValue::TypeStruct)
-    throw InputError(private_node.getNamespace() + ": no parameters; load the file of config/ that belongs here");
+    throw InputError(private_node.getNamespace() +
+                     ": no parameters; load the file of config/ that belongs here");
   return toYaml(tree);
 }
 

@@ -37,7 +37,8 @@ void PendingScans::release(const tf2_ros::Buffer& buffer, const std::string& odo
     const PendingScan& first = waiting_.front();
     if (const auto odom_from_base = lookUp(buffer, odom, base, first.stamp)) {
       take(first, planarPart(*odom_from_base));
-    } else if ((newest_ - first.stamp).toSec() > timeout_s_ || (ros::Time::now() - first.stamp).toSec() > timeout_s_) {
+    } else if ((newest_ - first.stamp).toSec() > timeout_s_ ||
+               (ros::Time::now() - first.stamp).toSec() > timeout_s_) {
       dropped_("no tf " + odom + " -> " + base + " at the scan's stamp");
     } else {
       return;

@@ -29,7 +29,8 @@ sensor_msgs::LaserScan toLaserScan(const RangeScan& scan, const std_msgs::Header
   const auto [first, last] =
       std::minmax_element(scan.beams.begin(), scan.beams.end(),
                           [](const Beam& a, const Beam& b) { return a.bearing_rad < b.bearing_rad; });
-  const double step_rad = (last->bearing_rad - first->bearing_rad) / static_cast<double>(scan.beams.size() - 1);
+  const double step_rad =
+      (last->bearing_rad - first->bearing_rad) / static_cast<double>(scan.beams.size() - 1);
   const double start_rad = first->bearing_rad + scan.base_from_sensor.yaw_rad;
   message.angle_min = static_cast<float>(start_rad);
   message.angle_max = static_cast<float>(last->bearing_rad + scan.base_from_sensor.yaw_rad);
@@ -39,8 +40,8 @@ sensor_msgs::LaserScan toLaserScan(const RangeScan& scan, const std_msgs::Header
   for (const Beam& beam : scan.beams) {
     if (!beam.hit) continue;
     const Eigen::Vector2d point_m =
-        scan.base_from_sensor * Eigen::Vector2d(beam.range_m * std::cos(beam.bearing_rad),
-                                                beam.range_m * std::sin(beam.bearing_rad));
+        scan.base_from_sensor *
+        Eigen::Vector2d(beam.range_m * std::cos(beam.bearing_rad), beam.range_m * std::sin(beam.bearing_rad));
     const auto bin = std::lround(wrapAngle(std::atan2(point_m.y(), point_m.x()) - start_rad) / step_rad);
     if (bin < 0 || bin >= static_cast<long>(message.ranges.size())) continue;
     // The nearer of two beams on one bearing stays.

@@ -13,7 +13,8 @@ bool TileFollower::take(const MapTiles& message) {
   const bool anew = tiles_ && message.map_epoch != epoch_;
   const bool fresh = !tiles_ || anew || message.complete;
   TileMap next = fresh ? TileMap(message.resolution, message.tiles.front().size) : *tiles_;
-  if (message.resolution != next.resolution()) throw InputError("map_tiles: resolution changed within one map_epoch");
+  if (message.resolution != next.resolution())
+    throw InputError("map_tiles: resolution changed within one map_epoch");
   for (const MapTile& tile : message.tiles) next.put(tile.col, tile.row, fromTile(tile));
   tiles_ = std::move(next);
   epoch_ = message.map_epoch;

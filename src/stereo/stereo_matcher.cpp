@@ -34,12 +34,14 @@ void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
   const auto require = [&](const cv::Mat1b& image, const std::string& name) {
     if (image.empty()) throw InputError(name + " image is empty");
     if (image.size() != rig.image_size_px)
-      throw InputError(name + " image is " + textOf(image.size()) + ", expected " + textOf(rig.image_size_px));
+      throw InputError(name + " image is " + textOf(image.size()) + ", expected " +
+                       textOf(rig.image_size_px));
   };
   require(images.reference, "reference");
   require(images.right, "right");
   if (!images.top.empty()) require(images.top, "top");
-  if (!images.top.empty() && !rig.top_shift) throw InputError("top image given, but the rig has no third camera");
+  if (!images.top.empty() && !rig.top_shift)
+    throw InputError("top image given, but the rig has no third camera");
 }
 
 void reject(Disparity& disparity, int y, int x, Rejection why) {
@@ -108,7 +110,8 @@ void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
                      surface_buffer_);
   for (int y = 0; y < surfaces_.rows; ++y)
     for (int x = 0; x < surfaces_.cols; ++x)
-      if (surfaces_(y, x) == 0 && disparity.disparity_px(y, x) > 0) reject(disparity, y, x, Rejection::kSurface);
+      if (surfaces_(y, x) == 0 && disparity.disparity_px(y, x) > 0)
+        reject(disparity, y, x, Rejection::kSurface);
 }
 
 }  // namespace cornerstone

@@ -10,11 +10,14 @@ namespace {
 
 constexpr int kLanes = 4;
 constexpr float kNoWinner_px = -1e4F;
-// Offsets between cameras (exposure, vignetting) vary slowly: what is coarser than this is taken out of the image.
+// Offsets between cameras (exposure, vignetting) vary slowly: what is coarser than this is taken out of the
+// image.
 constexpr int kOffsetWindow_px = 15;
-// The camera's own rounding to grey levels, 1/sqrt(12), after the smoothing below: no image is better than that.
+// The camera's own rounding to grey levels, 1/sqrt(12), after the smoothing below: no image is better than
+// that.
 constexpr float kLeastNoise = 0.15F;
-// Smoothing makes neighbouring equations share noise; they count as this many fewer (measured on synthetic images).
+// Smoothing makes neighbouring equations share noise; they count as this many fewer (measured on synthetic
+// images).
 constexpr float kSharedNoise = 1.7F;
 // What the equations do not know: slant within the support, rectification. Added to every sigma.
 constexpr float kModelSigma_px = 0.05F;
@@ -36,8 +39,10 @@ void SubpixelRefiner::prepare(const cv::Mat1b& image, Plane& plane) {
   cv::sepFilter2D(image, smooth_, CV_32F, smoothing, smoothing, {-1, -1}, 0, cv::BORDER_REFLECT);
   cv::blur(smooth_, mean_, {kOffsetWindow_px, kOffsetWindow_px}, {-1, -1}, cv::BORDER_REFLECT);
   cv::subtract(smooth_, mean_, plane.level);
-  cv::sepFilter2D(plane.level, plane.gradient_x, CV_32F, derivative, identity, {-1, -1}, 0, cv::BORDER_REFLECT);
-  cv::sepFilter2D(plane.level, plane.gradient_y, CV_32F, identity, derivative, {-1, -1}, 0, cv::BORDER_REFLECT);
+  cv::sepFilter2D(plane.level, plane.gradient_x, CV_32F, derivative, identity, {-1, -1}, 0,
+                  cv::BORDER_REFLECT);
+  cv::sepFilter2D(plane.level, plane.gradient_y, CV_32F, identity, derivative, {-1, -1}, 0,
+                  cv::BORDER_REFLECT);
 }
 
 void SubpixelRefiner::addEquations(const SubpixelView& view, const cv::Mat1s& winners_px) {
@@ -46,7 +51,8 @@ void SubpixelRefiner::addEquations(const SubpixelView& view, const cv::Mat1s& wi
   const double shift = vertical ? view.shift.y : view.shift.x;
   const cv::Mat1f& reference_gradient = vertical ? reference_.gradient_y : reference_.gradient_x;
   const cv::Mat1f& secondary_gradient = vertical ? secondary_.gradient_y : secondary_.gradient_x;
-  const auto gain = static_cast<float>(cv::norm(reference_.level) / std::max(cv::norm(secondary_.level), 1e-9));
+  const auto gain =
+      static_cast<float>(cv::norm(reference_.level) / std::max(cv::norm(secondary_.level), 1e-9));
   const int rows = reference_.level.rows, cols = reference_.level.cols;
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < cols; ++x) {
@@ -57,7 +63,8 @@ void SubpixelRefiner::addEquations(const SubpixelView& view, const cv::Mat1s& wi
       if (sx < 0 || sx >= cols || sy < 0 || sy >= rows) continue;
       const auto s = static_cast<float>(shift);
       const float ahead_px = static_cast<float>(along) / s - static_cast<float>(winner_px);
-      const float p_reference = s * reference_gradient(y, x), p_secondary = s * gain * secondary_gradient(sy, sx);
+      const float p_reference = s * reference_gradient(y, x),
+                  p_secondary = s * gain * secondary_gradient(sy, sx);
       const float p = 0.5F * (p_reference + p_secondary);
       const float e = reference_.level(y, x) - gain * secondary_.level(sy, sx) + p * ahead_px;
       pixel_.pp(y + radius_px_, x + radius_px_) += p_reference * p_secondary;
@@ -68,8 +75,8 @@ void SubpixelRefiner::addEquations(const SubpixelView& view, const cv::Mat1s& wi
   }
 }
 
-// out = sum over in at -radius .. radius steps, of pixels whose winner is at most a pixel from the middle one's; their
-// equations are moved to the middle one's winner.
+// out = sum over in at -radius .. radius steps, of pixels whose winner is at most a pixel from the middle
+// one's; their equations are moved to the middle one's winner.
 void SubpixelRefiner::sumOverSupport(const Sums& in, cv::Point step, Sums& out) const {
   const cv::v_float32x4 largest_step = cv::v_setall_f32(1.5F);
   for (int y = radius_px_; y < winners_px_.rows - radius_px_; ++y) {
@@ -80,7 +87,8 @@ void SubpixelRefiner::sumOverSupport(const Sums& in, cv::Point step, Sums& out) 
         const int ny = y + i * step.y, nx = x + i * step.x;
         const cv::v_float32x4 ahead = cv::v_load(&winners_px_(ny, nx)) - middle;
         const cv::v_float32x4 same = cv::v_abs(ahead) < largest_step;
-        const cv::v_float32x4 n_pp = cv::v_load(&in.pp(ny, nx)) & same, n_pe = cv::v_load(&in.pe(ny, nx)) & same;
+        const cv::v_float32x4 n_pp = cv::v_load(&in.pp(ny, nx)) & same,
+                              n_pe = cv::v_load(&in.pe(ny, nx)) & same;
         const cv::v_float32x4 moved = ahead * n_pp;
         pp += n_pp;
         pe += n_pe + moved;
@@ -111,8 +119,8 @@ void SubpixelRefiner::solve(cv::Mat1f& disparity_px, cv::Mat1f& sigma_px) const 
   }
 }
 
-void SubpixelRefiner::refine(const SubpixelInput& input, const SubpixelParams& params, cv::Mat1f& disparity_px,
-                             cv::Mat1f& sigma_px) {
+void SubpixelRefiner::refine(const SubpixelInput& input, const SubpixelParams& params,
+                             cv::Mat1f& disparity_px, cv::Mat1f& sigma_px) {
   const cv::Size size = input.reference->size();
   radius_px_ = params.support_px / 2;
   const cv::Size padded(size.width + 2 * radius_px_ + kLanes, size.height + 2 * radius_px_);
@@ -121,7 +129,8 @@ void SubpixelRefiner::refine(const SubpixelInput& input, const SubpixelParams& p
   winners_px_.setTo(kNoWinner_px);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
-      if ((*input.winners_px)(y, x) > 0) winners_px_(y + radius_px_, x + radius_px_) = (*input.winners_px)(y, x);
+      if ((*input.winners_px)(y, x) > 0)
+        winners_px_(y + radius_px_, x + radius_px_) = (*input.winners_px)(y, x);
   prepare(*input.reference, reference_);
   for (const SubpixelView& view : input.views) addEquations(view, *input.winners_px);
   sumOverSupport(pixel_, {1, 0}, row_);

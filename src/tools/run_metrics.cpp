@@ -10,9 +10,10 @@
 namespace cornerstone {
 namespace {
 
-constexpr double kNear_m = 0.10;       // two cells: within it a cell and a surface count as the same
-constexpr float kOccupied = 0.65f;     // map_server's occupied_thresh
-constexpr double kTruthStep_s = 0.2;   // between the poses from which "seen" is judged; 5 Hz as the paper's cameras
+constexpr double kNear_m = 0.10;    // two cells: within it a cell and a surface count as the same
+constexpr float kOccupied = 0.65f;  // map_server's occupied_thresh
+constexpr double kTruthStep_s =
+    0.2;  // between the poses from which "seen" is judged; 5 Hz as the paper's cameras
 constexpr double kTfStep_s = 0.1;
 
 // World points of a map's occupied cells.
@@ -20,23 +21,27 @@ std::vector<Eigen::Vector2d> occupiedPoints(const GridMap& map, const Pose2& wor
   std::vector<Eigen::Vector2d> points;
   for (int row = 0; row < map.geometry.rows; ++row)
     for (int col = 0; col < map.geometry.cols; ++col)
-      if (map.occupied(row, col) > kOccupied) points.push_back(world_from_map * map.geometry.centreOf({col, row}));
+      if (map.occupied(row, col) > kOccupied)
+        points.push_back(world_from_map * map.geometry.centreOf({col, row}));
   return points;
 }
 
 // Of the given surface points, how many lie within kNear_m of one of `points`.
-std::size_t countNear(const std::vector<Eigen::Vector2d>& surface, const std::vector<Eigen::Vector2d>& points) {
+std::size_t countNear(const std::vector<Eigen::Vector2d>& surface,
+                      const std::vector<Eigen::Vector2d>& points) {
   std::vector<cv::Point2f> flat;
   flat.reserve(points.size());
   for (const auto& p : points) flat.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
-  return static_cast<std::size_t>(std::count_if(surface.begin(), surface.end(), [&](const Eigen::Vector2d& s) {
-    return std::any_of(flat.begin(), flat.end(), [&](const cv::Point2f& p) {
-      return std::hypot(p.x - s.x(), p.y - s.y()) <= kNear_m;
-    });
-  }));
+  return static_cast<std::size_t>(
+      std::count_if(surface.begin(), surface.end(), [&](const Eigen::Vector2d& s) {
+        return std::any_of(flat.begin(), flat.end(), [&](const cv::Point2f& p) {
+          return std::hypot(p.x - s.x(), p.y - s.y()) <= kNear_m;
+        });
+      }));
 }
 
-std::vector<Eigen::Vector2d> seenSurface(const RobotRecording& robot, const TrueSurfaces& surfaces, const Sight& sight) {
+std::vector<Eigen::Vector2d> seenSurface(const RobotRecording& robot, const TrueSurfaces& surfaces,
+                                         const Sight& sight) {
   std::vector<bool> seen(surfaces.points().size(), false);
   double next_s = 0;
   for (const StampedPose& stamped : robot.truth) {
@@ -76,9 +81,10 @@ void addRegistration(const RunRecording& run, nlohmann::json& result) {
   if (!result["registered"]) return;
   const RobotRecording& current = run.robots.at(last.current_robot);
   // tf lags the truth by some of its periods: the end is where both are known.
-  const auto error = newestAnswer(current.truth.back().time_s - 5, current.truth.back().time_s, [&](double time_s) {
-    return relativePoseError(run, last.reference_robot, last.current_robot, time_s);
-  });
+  const auto error =
+      newestAnswer(current.truth.back().time_s - 5, current.truth.back().time_s, [&](double time_s) {
+        return relativePoseError(run, last.reference_robot, last.current_robot, time_s);
+      });
   if (!error) throw InputError(run.path + ": registered, but no tf between the robots at the end");
   result["relative_error_m"] = error->distance_m;
   result["relative_error_deg"] = error->angle_deg;
@@ -87,8 +93,9 @@ void addRegistration(const RunRecording& run, nlohmann::json& result) {
 }  // namespace
 
 std::optional<Pose2> truthAt(const RobotRecording& robot, double time_s) {
-  const auto after = std::lower_bound(robot.truth.begin(), robot.truth.end(), time_s,
-                                      [](const StampedPose& stamped, double t) { return stamped.time_s < t; });
+  const auto after =
+      std::lower_bound(robot.truth.begin(), robot.truth.end(), time_s,
+                       [](const StampedPose& stamped, double t) { return stamped.time_s < t; });
   if (after == robot.truth.end() || (after == robot.truth.begin() && after->time_s > time_s)) return {};
   if (after == robot.truth.begin()) return after->pose;
   const auto before = after - 1;
@@ -170,7 +177,8 @@ nlohmann::json evaluateRun(const RunRecording& run, const Sight& sight) {
   result["frames"] = frames;
   result["dropped"] = dropped;
   if (!run.real_time_factors.empty())
-    result["real_time_factor"] = *std::min_element(run.real_time_factors.begin(), run.real_time_factors.end());
+    result["real_time_factor"] =
+        *std::min_element(run.real_time_factors.begin(), run.real_time_factors.end());
   result["robots"] = robots;
   return result;
 }

@@ -17,8 +17,8 @@ struct MapAccuracy {
   std::size_t seen_mapped = 0;    // of these, within 0.10 m of an occupied cell
 };
 
-// The robot's last map against the world. The map's frame is placed where the robot truly stood when its map began:
-// whatever the map drifts from there counts against it.
+// The robot's last map against the world. The map's frame is placed where the robot truly stood when its map
+// began: whatever the map drifts from there counts against it.
 MapAccuracy mapAccuracy(const RunRecording& run, const std::string& robot, const TrueSurfaces& surfaces,
                         const Sight& sight);
 
@@ -26,7 +26,8 @@ struct RelativePoseError {
   double distance_m = 0;
   double angle_deg = 0;
 };
-// The pose of `other` in `reference`'s base frame through tf against the truth, at a time; empty: tf does not know it.
+// The pose of `other` in `reference`'s base frame through tf against the truth, at a time; empty: tf does not
+// know it.
 std::optional<RelativePoseError> relativePoseError(const RunRecording& run, const std::string& reference,
                                                    const std::string& other, double time_s);
 

@@ -50,7 +50,8 @@ void takeDiagnostics(RunRecording& run, const diagnostic_msgs::DiagnosticArray& 
   }
 }
 
-void takeRobotMessage(RobotRecording& robot, const std::string& name, const rosbag::MessageInstance& message) {
+void takeRobotMessage(RobotRecording& robot, const std::string& name,
+                      const rosbag::MessageInstance& message) {
   if (const auto odometry = message.instantiate<nav_msgs::Odometry>(); odometry && name == "ground_truth") {
     Eigen::Isometry3d world_from_base;
     tf2::fromMsg(odometry->pose.pose, world_from_base);
@@ -76,7 +77,8 @@ void takeMessage(RunRecording& run, const rosbag::MessageInstance& message) {
     run.registrations.push_back(*registration);
   else if (const auto text = message.instantiate<std_msgs::String>(); text && topic == "/world")
     run.world_yaml = text->data;
-  else if (const auto factor = message.instantiate<std_msgs::Float32>(); factor && topic == "/real_time_factor")
+  else if (const auto factor = message.instantiate<std_msgs::Float32>();
+           factor && topic == "/real_time_factor")
     run.real_time_factors.push_back(factor->data);
   else if (const auto [robot, name] = robotAndName(topic); !robot.empty())
     takeRobotMessage(run.robots[robot], name, message);
@@ -100,8 +102,8 @@ RunRecording readRun(const std::string& bag_or_folder) {
   return run;
 }
 
-std::optional<Pose2> transformAt(const RunRecording& run, const std::string& target, const std::string& source,
-                                 double time_s) {
+std::optional<Pose2> transformAt(const RunRecording& run, const std::string& target,
+                                 const std::string& source, double time_s) {
   try {
     return planarPart(tf2::transformToEigen(run.tf->lookupTransform(target, source, ros::Time(time_s))));
   } catch (const tf2::TransformException&) {

@@ -27,9 +27,9 @@ struct StageCounts {  // from the nodelets' diagnostics, the newest of each
 };
 
 struct RobotRecording {
-  std::vector<StampedPose> truth;  // world_from_base, rising times
-  GridMap map;                     // at the end; empty when none was recorded
-  CornerArray landmarks;           // at the end
+  std::vector<StampedPose> truth;             // world_from_base, rising times
+  GridMap map;                                // at the end; empty when none was recorded
+  CornerArray landmarks;                      // at the end
   std::map<std::string, StageCounts> stages;  // by stage: stereo, mapper, registration
   std::optional<unsigned> collisions;
 };
@@ -43,11 +43,12 @@ struct RunRecording {
   std::shared_ptr<tf2::BufferCore> tf;
 };
 
-// A bag, or a folder that holds run.bag. InputError naming the file when it cannot be read or holds no ground truth.
+// A bag, or a folder that holds run.bag. InputError naming the file when it cannot be read or holds no ground
+// truth.
 RunRecording readRun(const std::string& bag_or_folder);
 
 // target_from_source at a time; empty where tf does not know it.
-std::optional<Pose2> transformAt(const RunRecording& run, const std::string& target, const std::string& source,
-                                 double time_s);
+std::optional<Pose2> transformAt(const RunRecording& run, const std::string& target,
+                                 const std::string& source, double time_s);
 
 }  // namespace cornerstone

@@ -10,7 +10,9 @@ namespace {
 // Scans that wait for odometry at 0.1 s steps, with a clock that stands at the newest stamp.
 class PendingScansTest : public ::testing::Test {
  protected:
-  PendingScansTest() : buffer_(ros::Duration(10)), pending_(0.5, [this](const std::string& cause) { dropped_.push_back(cause); }) {
+  PendingScansTest()
+      : buffer_(ros::Duration(10)),
+        pending_(0.5, [this](const std::string& cause) { dropped_.push_back(cause); }) {
     ros::Time::init();
     buffer_.setUsingDedicatedThread(true);
   }

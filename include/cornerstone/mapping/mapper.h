@@ -1,4 +1,5 @@
-// Scans and odometry in, a map and the drift of the odometry out: each scan is fitted to the map before it is inserted.
+// Scans and odometry in, a map and the drift of the odometry out: each scan is fitted to the map before it is
+// inserted.
 #pragma once
 
 #include "cornerstone/mapping/occupancy_grid.h"

@@ -1,4 +1,5 @@
-// A grid map put together from square tiles as they arrive, of any extent: how one robot holds another robot's map.
+// A grid map put together from square tiles as they arrive, of any extent: how one robot holds another
+// robot's map.
 #pragma once
 
 #include <map>
@@ -13,8 +14,8 @@ class TileMap {
  public:
   // Both must be positive: InputError otherwise.
   TileMap(double resolution_m, int tile_cells);
-  // occupied: tile_cells x tile_cells; col, row: its first cell, in cells from the map frame's origin, a multiple of
-  // tile_cells. InputError otherwise, and nothing changes.
+  // occupied: tile_cells x tile_cells; col, row: its first cell, in cells from the map frame's origin, a
+  // multiple of tile_cells. InputError otherwise, and nothing changes.
   void put(int col, int row, const cv::Mat1f& occupied);
   // All tiles as one map; what no tile covers was never seen. Empty map: no tile yet.
   GridMap assemble() const;

@@ -1,5 +1,5 @@
-// Registration over time: a frame is shared only after agreeing evidence, kept while it holds, and withdrawn when the
-// evidence contradicts it. It never guesses: without REGISTERED there is no pose.
+// Registration over time: a frame is shared only after agreeing evidence, kept while it holds, and withdrawn
+// when the evidence contradicts it. It never guesses: without REGISTERED there is no pose.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,9 @@ namespace cornerstone {
 struct TrackerParams {
   // Agreeing answers in a row, on maps that changed in between, before the frame is shared.
   int agreeing_answers = 3;
-  // Two answers agree within this distance, measured where the current map lies (not at its frame's origin), and
-  // angle. Maps drift by some centimetres between answers; a different pose is metres or tens of degrees away.
+  // Two answers agree within this distance, measured where the current map lies (not at its frame's origin),
+  // and angle. Maps drift by some centimetres between answers; a different pose is metres or tens of degrees
+  // away.
   double agree_distance_m = 0.30;
   double agree_angle_rad = 0.07;
   // Contradicting answers in a row before the shared frame is withdrawn.
@@ -34,8 +35,8 @@ class RegistrationTracker {
  public:
   explicit RegistrationTracker(const TrackerParams& params);
 
-  // The outcome of one attempt to register, at `time_s` on any rising clock. centre_m: middle of the known part of
-  // the current map, in its own frame, where agreement is measured. No answer is not a contradiction.
+  // The outcome of one attempt to register, at `time_s` on any rising clock. centre_m: middle of the known
+  // part of the current map, in its own frame, where agreement is measured. No answer is not a contradiction.
   void update(const std::optional<Registration>& answer, const Eigen::Vector2d& centre_m, double time_s);
   // The other map began anew: nothing known holds any longer.
   void lose(const std::string& reason);

@@ -14,9 +14,11 @@ namespace cornerstone {
 // 0 to 100 is the probability in percent, -1 was never seen.
 nav_msgs::OccupancyGrid toOccupancyGrid(const GridMap& map, const std_msgs::Header& header);
 // The same values of one rectangle (in cells, inside the map).
-map_msgs::OccupancyGridUpdate toUpdate(const GridMap& map, const cv::Rect& cells, const std_msgs::Header& header);
+map_msgs::OccupancyGridUpdate toUpdate(const GridMap& map, const cv::Rect& cells,
+                                       const std_msgs::Header& header);
 
-// And back. InputError naming the field: sizes that do not fit, a resolution that is not positive, a turned origin.
+// And back. InputError naming the field: sizes that do not fit, a resolution that is not positive, a turned
+// origin.
 GridMap fromOccupancyGrid(const nav_msgs::OccupancyGrid& message);
 void applyUpdate(const map_msgs::OccupancyGridUpdate& update, GridMap& map);
 

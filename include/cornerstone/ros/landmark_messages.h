@@ -1,4 +1,5 @@
-// Corners, registrations and their rviz markers. The message is called Corner, the core's landmark CornerLandmark.
+// Corners, registrations and their rviz markers. The message is called Corner, the core's landmark
+// CornerLandmark.
 #pragma once
 
 #include <visualization_msgs/MarkerArray.h>
@@ -19,7 +20,8 @@ CornerLandmark fromMessage(const Corner& message);
 // The state, pose, covariance and evidence; names, frames and epochs are the caller's to fill in.
 MapRegistration toMessage(const RegistrationTracker& tracker, double now_s);
 
-// Edges as points (namespace "edges") and each corner as its two arms (namespace "corners"), coloured by kind.
+// Edges as points (namespace "edges") and each corner as its two arms (namespace "corners"), coloured by
+// kind.
 visualization_msgs::MarkerArray toMarkers(const Landmarks& landmarks, double arm_length_m,
                                           const std_msgs::Header& header);
 // Lines between the matched corners of two maps, in the reference map's frame (namespace "matches").

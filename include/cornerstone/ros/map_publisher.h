@@ -1,6 +1,6 @@
-// Publishes a mapper's grid: map (whole, latched: when its size changed and for new subscribers), map_updates (the
-// rectangle that changed), map_metadata, and map_tiles for other robots (those that changed; all of them to a new
-// subscriber and after a reset).
+// Publishes a mapper's grid: map (whole, latched: when its size changed and for new subscribers), map_updates
+// (the rectangle that changed), map_metadata, and map_tiles for other robots (those that changed; all of them
+// to a new subscriber and after a reset).
 #pragma once
 
 #include <ros/node_handle.h>
@@ -19,8 +19,10 @@ class MapPublisher {
   void publish(const Mapper& mapper);
 
  private:
-  void publishMap(const OccupancyGrid& grid, const std::vector<TileIndex>& changed, const std_msgs::Header& header);
-  MapTiles tilesOf(const Mapper& mapper, const std::vector<TileIndex>& tiles, const std_msgs::Header& header) const;
+  void publishMap(const OccupancyGrid& grid, const std::vector<TileIndex>& changed,
+                  const std_msgs::Header& header);
+  MapTiles tilesOf(const Mapper& mapper, const std::vector<TileIndex>& tiles,
+                   const std_msgs::Header& header) const;
 
   std::string robot_;
   std::string map_frame_;

@@ -1,4 +1,5 @@
-// Parameters of the nodelets: their own and those of the stages they call. One YAML file of config/ for each struct.
+// Parameters of the nodelets: their own and those of the stages they call. One YAML file of config/ for each
+// struct.
 #pragma once
 
 #include <string>
@@ -14,11 +15,11 @@
 
 namespace cornerstone {
 
-struct TrinocularStereoParams {  // config/stereo.yaml
+struct TrinocularStereoParams {       // config/stereo.yaml
   std::string images = "image_rect";  // or image_raw: rectified here with each camera's calibration
   bool third_camera = true;           // false: reference and right only
-  // Largest difference between the stamps of one set; 0: equal stamps. Cameras with a common trigger differ by less
-  // than a millisecond; at 1 m/s and 3 m range 10 ms already shift the image by a quarter of a pixel.
+  // Largest difference between the stamps of one set; 0: equal stamps. Cameras with a common trigger differ
+  // by less than a millisecond; at 1 m/s and 3 m range 10 ms already shift the image by a quarter of a pixel.
   double sync_tolerance_s = 0.0;
   int queue_size = 5;  // sets that may wait; more only delays what is shown
   StereoParams stereo;
@@ -31,10 +32,12 @@ struct OccupancyMapperParams {  // config/mapper.yaml
   std::string input = "disparity";  // or depth, scan
   // Standard deviation of every disparity, px; 0: the topic disparity_sigma tells it pixel by pixel.
   double disparity_sigma_px = 0.0;
-  // A scan waits this long for the odometry of its instant, then it is dropped. Drivers publish at 10 Hz or faster.
+  // A scan waits this long for the odometry of its instant, then it is dropped. Drivers publish at 10 Hz or
+  // faster.
   double tf_timeout_s = 0.5;
-  double publish_period_s = 0.5;  // of the map and its tiles; at most 2 Hz keeps the picture fresh at little cost
-  double tf_period_s = 0.05;      // of map -> odom
+  double publish_period_s =
+      0.5;                    // of the map and its tiles; at most 2 Hz keeps the picture fresh at little cost
+  double tf_period_s = 0.05;  // of map -> odom
   ScanParams scan;
   DepthNoise depth;
   LaserParams laser;

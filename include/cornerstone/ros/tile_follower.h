@@ -10,8 +10,8 @@ namespace cornerstone {
 
 class TileFollower {
  public:
-  // True: the robot's map began anew (another epoch), all older tiles are gone. InputError naming the field at fault,
-  // and nothing changes.
+  // True: the robot's map began anew (another epoch), all older tiles are gone. InputError naming the field
+  // at fault, and nothing changes.
   bool take(const MapTiles& message);
   bool empty() const { return !tiles_; }
   GridMap map() const { return tiles_ ? tiles_->assemble() : GridMap{}; }

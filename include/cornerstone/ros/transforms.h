@@ -1,4 +1,5 @@
-// Poses between tf, messages and the core. A look-up that fails or is not finite is an empty answer, never identity.
+// Poses between tf, messages and the core. A look-up that fails or is not finite is an empty answer, never
+// identity.
 #pragma once
 
 #include <geometry_msgs/Pose.h>

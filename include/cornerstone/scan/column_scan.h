@@ -1,5 +1,5 @@
-// From a disparity image to one range per image column (paper, section 2.1 and Fig. 2): the nearest surface within a
-// height band that enough pixels of the column agree on.
+// From a disparity image to one range per image column (paper, section 2.1 and Fig. 2): the nearest surface
+// within a height band that enough pixels of the column agree on.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,8 +17,9 @@ struct ScanParams {
 };
 void describe(ParamVisitor& visitor, ScanParams& params);
 
-// base_from_camera: pose of the reference camera's optical frame (z forward, x right, y down) in the base frame
-// (x forward, z up, origin on the floor). The scan's sensor frame lies at the camera, heading along its optical axis.
+// base_from_camera: pose of the reference camera's optical frame (z forward, x right, y down) in the base
+// frame (x forward, z up, origin on the floor). The scan's sensor frame lies at the camera, heading along its
+// optical axis.
 RangeScan scanFromDisparity(const Disparity& disparity, const Eigen::Isometry3d& base_from_camera,
                             const ScanParams& params);
 

@@ -1,11 +1,14 @@
-// Sub-pixel disparity by least squares, with its standard deviation, around whole-pixel winners (Lucas and Kanade, 1981).
+// Sub-pixel disparity by least squares, with its standard deviation, around whole-pixel winners (Lucas and
+// Kanade, 1981).
 //
-// At a reference pixel with winner D, each camera that sees it at s = x + D * shift gives one equation p d = q,
+// At a reference pixel with winner D, each camera that sees it at s = x + D * shift gives one equation p d =
+// q,
 //   p = shift * (I_ref' + I_sec') / 2,   q = p D + I_ref(x) - I_sec(s)
-// and the pixels around on the same surface (winners differ by at most a pixel from step to step) are added up:
+// and the pixels around on the same surface (winners differ by at most a pixel from step to step) are added
+// up:
 //   d = sum(p q) / sum(p p),   sigma^2 = noise^2 / sum(p p)
-// sum(p p) is formed as the product of the two cameras' own gradients: their noise is independent, so it does not
-// pull d towards whole pixels. `noise` comes from what the equations leave. In px of the reference pair.
+// sum(p p) is formed as the product of the two cameras' own gradients: their noise is independent, so it does
+// not pull d towards whole pixels. `noise` comes from what the equations leave. In px of the reference pair.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,7 +24,8 @@ struct SubpixelView {
 struct SubpixelInput {
   const cv::Mat1b* reference = nullptr;
   std::vector<SubpixelView> views;
-  const cv::Mat1s* winners_px = nullptr;  // whole disparities, 0 where there is none; may be wider than the image
+  const cv::Mat1s* winners_px =
+      nullptr;  // whole disparities, 0 where there is none; may be wider than the image
 };
 
 struct SubpixelParams {
@@ -31,7 +35,8 @@ struct SubpixelParams {
 class SubpixelRefiner {
  public:
   // Fills both planes, with 0 where there is no answer.
-  void refine(const SubpixelInput& input, const SubpixelParams& params, cv::Mat1f& disparity_px, cv::Mat1f& sigma_px);
+  void refine(const SubpixelInput& input, const SubpixelParams& params, cv::Mat1f& disparity_px,
+              cv::Mat1f& sigma_px);
 
  private:
   struct Plane {  // an image without its offset and its finest noise
