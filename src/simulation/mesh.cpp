@@ -11,12 +11,18 @@ struct Quad {
   std::array<Eigen::Vector2d, 4> uv;
 };
 
-void addQuad(const Quad& quad, Material material, Meshes& meshes) {
+// Daylight from above and one side.
+int shadeOf(const Eigen::Vector3d& normal) {
+  const double lit = std::max(normal.dot(Eigen::Vector3d(-0.7, -0.4, 0.6).normalized()), 0.0);
+  return int(std::lround(lit * (kShades - 1)));
+}
+
+void addQuad(const Quad& quad, const Finish& finish, Meshes& meshes) {
   const Eigen::Vector3d normal =
       (quad.corners_m[1] - quad.corners_m[0]).cross(quad.corners_m[3] - quad.corners_m[0]).normalized();
   const auto vertex = [&](std::size_t i) { return MeshVertex{quad.corners_m[i], normal, quad.uv[i]}; };
-  meshes[material].push_back({vertex(0), vertex(1), vertex(2)});
-  meshes[material].push_back({vertex(0), vertex(2), vertex(3)});
+  meshes[finish].push_back({vertex(0), vertex(1), vertex(2)});
+  meshes[finish].push_back({vertex(0), vertex(2), vertex(3)});
 }
 
 // A number in [0, 1) that differs between places but not within a plane (1 cm steps).
@@ -38,7 +44,7 @@ std::array<Eigen::Vector2d, 4> fittedUv(Material material, const Eigen::Vector3d
   return {Eigen::Vector2d{u0, v1}, {u1, v1}, {u1, v0}, {u0, v0}};
 }
 
-void addSide(const Solid& solid, std::size_t i, const Texture& texture, Meshes& meshes) {
+void addSide(const Solid& solid, std::size_t i, const Texture& texture, bool shaded, Meshes& meshes) {
   const Eigen::Vector2d &a = solid.polygon_m[i], &b = solid.polygon_m[(i + 1) % solid.polygon_m.size()];
   const Eigen::Vector2d along = (b - a).normalized();
   const Eigen::Vector2d outward(along.y(), -along.x());
@@ -55,12 +61,13 @@ void addSide(const Solid& solid, std::size_t i, const Texture& texture, Meshes& 
     const double v0 = 1 - solid.z_min_m / texture.height_m, v1 = 1 - solid.z_max_m / texture.height_m;
     quad.uv = {Eigen::Vector2d{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}};
   }
-  addQuad(quad, solid.material, meshes);
+  addQuad(quad, {solid.material, shaded ? shadeOf({outward.x(), outward.y(), 0}) : 0}, meshes);
 }
 
 // Top (facing up) or bottom of a prism: a fan.
-void addLid(const Solid& solid, bool top, const Texture& texture, Meshes& meshes) {
+void addLid(const Solid& solid, bool top, const Texture& texture, bool shaded, Meshes& meshes) {
   const Eigen::Vector3d normal(0, 0, top ? 1 : -1);
+  auto& mesh = meshes[{solid.material, shaded ? shadeOf(normal) : 0}];
   const auto vertex = [&](std::size_t i) {
     const Eigen::Vector2d& p = solid.polygon_m[i];
     const double z_m = top ? solid.z_max_m : solid.z_min_m;
@@ -68,21 +75,23 @@ void addLid(const Solid& solid, bool top, const Texture& texture, Meshes& meshes
   };
   for (std::size_t i = 1; i + 1 < solid.polygon_m.size(); ++i) {
     if (top)
-      meshes[solid.material].push_back({vertex(0), vertex(i), vertex(i + 1)});
+      mesh.push_back({vertex(0), vertex(i), vertex(i + 1)});
     else
-      meshes[solid.material].push_back({vertex(0), vertex(i + 1), vertex(i)});
+      mesh.push_back({vertex(0), vertex(i + 1), vertex(i)});
   }
 }
 
 }  // namespace
 
-Meshes meshSolids(const std::vector<Solid>& solids, const Textures& textures) {
+double brightnessOf(int shade) { return 0.85 + 0.15 * shade / (kShades - 1); }
+
+Meshes meshSolids(const std::vector<Solid>& solids, const Textures& textures, bool shaded) {
   Meshes meshes;
   for (const Solid& solid : solids) {
     const Texture& texture = textures.at(solid.material);
-    for (std::size_t i = 0; i < solid.polygon_m.size(); ++i) addSide(solid, i, texture, meshes);
-    addLid(solid, true, texture, meshes);
-    if (solid.z_min_m > 0) addLid(solid, false, texture, meshes);
+    for (std::size_t i = 0; i < solid.polygon_m.size(); ++i) addSide(solid, i, texture, shaded, meshes);
+    addLid(solid, true, texture, shaded, meshes);
+    if (solid.z_min_m > 0) addLid(solid, false, texture, shaded, meshes);
   }
   return meshes;
 }
@@ -96,7 +105,7 @@ void addFloorAndCeiling(const World& world, const Textures& textures, Meshes& me
     if (!up) std::swap(quad.corners_m[1], quad.corners_m[3]);
     for (std::size_t i = 0; i < 4; ++i)
       quad.uv[i] = {quad.corners_m[i].x() / texture.width_m, quad.corners_m[i].y() / texture.height_m};
-    addQuad(quad, material, meshes);
+    addQuad(quad, {material, shadeOf({0, 0, up ? 1.0 : -1.0})}, meshes);
   };
   plane(0, Material::kCarpet, true);
   plane(world.ceiling_m, Material::kCeiling, false);
