@@ -173,15 +173,22 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
   }
 
   bool saveMapFile(MapFile::Request& request, MapFile::Response& response) {
-    return attempt(response, [&] { saveMap(mapper_->grid().snapshot(), request.path); });
+    return attempt(response, [&] { saveMap(mapper_->grid().snapshot(), yamlPath(request.path)); });
   }
 
   bool loadMapFile(MapFile::Request& request, MapFile::Response& response) {
     return attempt(response, [&] {
-      mapper_->load(loadMap(request.path));
+      const Pose2 map_from_base{request.x, request.y, request.yaw};
+      if (!map_from_base.isFinite()) throw InputError("load_map: x, y or yaw is not finite");
+      mapper_->load(loadMap(yamlPath(request.path)), map_from_base);
       pending_->clear();
       map_publisher_->publish(*mapper_);
     });
+  }
+
+  static std::string yamlPath(const std::string& path) {
+    const bool has_ending = path.size() >= 5 && path.compare(path.size() - 5, 5, ".yaml") == 0;
+    return has_ending ? path : path + ".yaml";
   }
 
   static bool attempt(MapFile::Response& response, const std::function<void()>& work) {

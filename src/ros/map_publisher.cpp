@@ -28,7 +28,7 @@ cv::Rect changedCells(const OccupancyGrid& grid, const GridMap& map, const std::
 }  // namespace
 
 MapPublisher::MapPublisher(ros::NodeHandle& node, const std::string& robot, const std::string& map_frame)
-    : robot_(robot), map_frame_(map_frame) {
+    : epoch_base_(ros::WallTime::now().sec), robot_(robot), map_frame_(map_frame) {
   map_ = node.advertise<nav_msgs::OccupancyGrid>("map", 1, true);
   updates_ = node.advertise<map_msgs::OccupancyGridUpdate>("map_updates", 10);
   metadata_ = node.advertise<nav_msgs::MapMetaData>("map_metadata", 1, true);
@@ -40,7 +40,7 @@ void MapPublisher::publish(const Mapper& mapper) {
   std_msgs::Header header;
   header.stamp = ros::Time::now();
   header.frame_id = map_frame_;
-  const bool anew = mapper.epoch() != published_epoch_;
+  const bool anew = epochOf(mapper) != published_epoch_;
   const bool new_map_subscriber = map_.getNumSubscribers() > map_subscribers_;
   const bool new_tile_subscriber = tiles_.getNumSubscribers() > tile_subscribers_;
   map_subscribers_ = map_.getNumSubscribers();
@@ -57,7 +57,7 @@ void MapPublisher::publish(const Mapper& mapper) {
     tiles_.publish(tilesOf(mapper, changed, header));
   }
   published_version_ = grid.version();
-  published_epoch_ = mapper.epoch();
+  published_epoch_ = epochOf(mapper);
 }
 
 void MapPublisher::publishMap(const OccupancyGrid& grid, const std::vector<TileIndex>& changed,
@@ -79,7 +79,7 @@ MapTiles MapPublisher::tilesOf(const Mapper& mapper, const std::vector<TileIndex
   MapTiles message;
   message.header = header;
   message.robot = robot_;
-  message.map_epoch = mapper.epoch();
+  message.map_epoch = epochOf(mapper);
   message.version = static_cast<std::uint32_t>(mapper.grid().version());
   message.resolution = mapper.grid().params().resolution_m;
   for (const TileIndex& index : tiles) {

@@ -9,7 +9,7 @@ namespace {
 
 Eigen::Isometry3d toIsometry(const Pose2& a_from_b) {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.translation() = {a_from_b.x_m, a_from_b.y_m, 0};
+  motion.translation() << a_from_b.x_m, a_from_b.y_m, 0;
   motion.linear() = Eigen::AngleAxisd(a_from_b.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return motion;
 }
