@@ -21,8 +21,8 @@ void addPairs(const EdgeIndex& from, const EdgeIndex& to, const Pose2& to_from_f
               bool forward, std::size_t max_edges, const Eigen::Vector2d& pivot_m,
               std::vector<LinePair>& pairs) {
   const Eigen::Matrix2d turn = to_from_from.rotation();
-  const std::size_t count = std::min(from.edges().size(), max_edges);
-  for (std::size_t i = 0; i < count; ++i) {
+  const std::size_t step = (from.edges().size() + max_edges - 1) / max_edges;
+  for (std::size_t i = 0; i < from.edges().size(); i += step) {
     const EdgePoint& edge = from.edges()[i];
     const Eigen::Vector2d normal = turn * edge.normal;
     const int partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);

@@ -3,25 +3,63 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+
+#include "cornerstone/landmarks/edge_index.h"
 
 namespace cornerstone {
 namespace {
 
 constexpr int kDegrees = 360;
+constexpr double kWallReach_m = 0.5;
+constexpr double kWallDepth_m = 0.15;  // edges this far beside are another wall's
+constexpr double kSameWallCosine = 0.8;
+constexpr std::size_t kMaxWallEdges = 1500;       // directions of so many edges make a smooth histogram
 constexpr double kYawReach_rad = 8 * M_PI / 180;  // a corner's arms of ten cells are right to some 5 degrees
 
+// The direction of the wall around an edge: over a metre the cells' staircase no longer matters. Empty: no
+// line.
+std::optional<double> wallDirection(const EdgeIndex& index, const EdgePoint& edge) {
+  double count = 0;
+  Eigen::Vector2d sum(0, 0);
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  index.forEachNear(edge.position_m, [&](int i) {
+    const EdgePoint& other = index.edges()[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d offset = other.position_m - edge.position_m;
+    if (offset.squaredNorm() > kWallReach_m * kWallReach_m ||
+        std::abs(offset.dot(edge.normal)) > kWallDepth_m || other.normal.dot(edge.normal) < kSameWallCosine)
+      return;
+    ++count;
+    sum += offset;
+    squares += offset * offset.transpose();
+  });
+  if (count < 5) return std::nullopt;
+  const Eigen::Vector2d mean = sum / count;
+  const Eigen::Matrix2d spread = squares / count - mean * mean.transpose();
+  if (spread.trace() < kWallReach_m * kWallReach_m / 12) return std::nullopt;  // too short
+  const double line = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+  const Eigen::Vector2d normal(-std::sin(line), std::cos(line));
+  return normal.dot(edge.normal) > 0 ? line + M_PI / 2 : line - M_PI / 2;
+}
+
 std::vector<double> directionsOf(const std::vector<EdgePoint>& edges) {
+  const EdgeIndex index(edges, kWallReach_m);
   std::vector<double> sharp(kDegrees), smooth(kDegrees);
-  for (const EdgePoint& edge : edges) {
-    const double degrees = std::atan2(edge.normal.y(), edge.normal.x()) * 180 / M_PI;
-    ++sharp[static_cast<std::size_t>((static_cast<int>(std::floor(degrees)) + kDegrees) % kDegrees)];
+  for (std::size_t i = 0; i < std::min(edges.size(), kMaxWallEdges); ++i) {
+    const auto direction = wallDirection(index, edges[i]);
+    if (!direction) continue;
+    const double degrees = *direction * 180 / M_PI + 2 * kDegrees;
+    const auto low = static_cast<std::size_t>(degrees);
+    const double share = degrees - static_cast<double>(low);
+    sharp[low % kDegrees] += 1 - share;
+    sharp[(low + 1) % kDegrees] += share;
   }
-  constexpr std::array<double, 7> kernel{1, 6, 15, 20, 15, 6, 1};  // about 1.2 degrees wide
+  constexpr std::array<double, 5> kernel{1, 4, 6, 4, 1};  // a degree wide
   for (int i = 0; i < kDegrees; ++i)
-    for (int k = 0; k < 7; ++k)
+    for (int k = 0; k < 5; ++k)
       smooth[static_cast<std::size_t>(i)] +=
           kernel[static_cast<std::size_t>(k)] *
-          sharp[static_cast<std::size_t>((i + k - 3 + kDegrees) % kDegrees)];
+          sharp[static_cast<std::size_t>((i + k - 2 + kDegrees) % kDegrees)];
   return smooth;
 }
 

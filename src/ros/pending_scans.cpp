@@ -31,7 +31,7 @@ void PendingScans::add(PendingScan scan) {
   waiting_.push_back(std::move(scan));
 }
 
-void PendingScans::release(const tf2_ros::Buffer& buffer, const std::string& odom, const std::string& base,
+void PendingScans::release(const tf2::BufferCore& buffer, const std::string& odom, const std::string& base,
                            const std::function<void(const PendingScan&, const Pose2&)>& take) {
   while (!waiting_.empty()) {
     const PendingScan& first = waiting_.front();

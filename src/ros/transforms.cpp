@@ -47,7 +47,7 @@ Eigen::Matrix3d fromRowMajor(const boost::array<double, 9>& values) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
 }
 
-std::optional<Eigen::Isometry3d> lookUp(const tf2_ros::Buffer& buffer, const std::string& target,
+std::optional<Eigen::Isometry3d> lookUp(const tf2::BufferCore& buffer, const std::string& target,
                                         const std::string& source, const ros::Time& stamp) {
   try {
     const Eigen::Isometry3d motion = tf2::transformToEigen(buffer.lookupTransform(target, source, stamp));

@@ -37,10 +37,10 @@ void takeTf(RunRecording& run, const tf2_msgs::TFMessage& message, bool is_stati
 
 void takeDiagnostics(RunRecording& run, const diagnostic_msgs::DiagnosticArray& message) {
   for (const auto& status : message.status) {
-    // "/b/mapper: mapper": the node's name, then the stage's
+    // "b/mapper: mapper": the node's name, then the stage's
     const std::size_t colon = status.name.find(": ");
-    if (colon == std::string::npos || status.name[0] != '/') continue;
-    const std::string robot = robotAndName(status.name.substr(0, colon)).first;
+    if (colon == std::string::npos) continue;
+    const std::string robot = robotAndName("/" + status.name.substr(0, colon)).first;
     if (robot.empty()) continue;
     StageCounts& counts = run.robots[robot].stages[status.name.substr(colon + 2)];
     for (const auto& value : status.values) {

@@ -14,7 +14,6 @@ class PendingScansTest : public ::testing::Test {
       : buffer_(ros::Duration(10)),
         pending_(0.5, [this](const std::string& cause) { dropped_.push_back(cause); }) {
     ros::Time::init();
-    buffer_.setUsingDedicatedThread(true);
   }
   void odometryAt(double time_s, double x_m) {
     buffer_.setTransform(toStamped({x_m, 0, 0}, "odom", "base", ros::Time(time_s)), "test");
@@ -28,7 +27,7 @@ class PendingScansTest : public ::testing::Test {
                      [this](const PendingScan&, const Pose2& pose) { taken_x_m_.push_back(pose.x_m); });
   }
 
-  tf2_ros::Buffer buffer_;
+  tf2::BufferCore buffer_;
   std::vector<std::string> dropped_;
   PendingScans pending_;
   std::vector<double> taken_x_m_;

@@ -14,7 +14,7 @@ struct RefinementOptions {
   double first_reach_m = 0.3;    // search radius at the start
   double last_reach_m = 0.1;     // and at the end
   int rounds = 5;                // of choosing partners
-  std::size_t max_edges = 2000;  // of each map: millimetres need no more
+  std::size_t max_edges = 2000;  // of each map, evenly chosen: millimetres need no more
 };
 
 struct RefinedPose {

@@ -27,7 +27,7 @@ class PendingScans {
   void add(PendingScan scan);
   // Hands over, in order, every scan whose odom_from_base is known; drops those that have waited longer than
   // the time-out (measured by the newest stamp and by the clock) or whose pose is not finite.
-  void release(const tf2_ros::Buffer& buffer, const std::string& odom, const std::string& base,
+  void release(const tf2::BufferCore& buffer, const std::string& odom, const std::string& base,
                const std::function<void(const PendingScan&, const Pose2& odom_from_base)>& take);
   // After a jump back in time: everything of the old time goes.
   void clear();

@@ -6,7 +6,7 @@
 #include <geometry_msgs/Transform.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/time.h>
-#include <tf2_ros/buffer.h>
+#include <tf2/buffer_core.h>
 
 #include <Eigen/Geometry>
 #include <boost/array.hpp>
@@ -29,7 +29,7 @@ boost::array<double, 9> toRowMajor(const Eigen::Matrix3d& matrix);
 Eigen::Matrix3d fromRowMajor(const boost::array<double, 9>& values);
 
 // target_from_source at an instant; ros::Time(0): the newest known. Does not wait.
-std::optional<Eigen::Isometry3d> lookUp(const tf2_ros::Buffer& buffer, const std::string& target,
+std::optional<Eigen::Isometry3d> lookUp(const tf2::BufferCore& buffer, const std::string& target,
                                         const std::string& source, const ros::Time& stamp);
 
 }  // namespace cornerstone
