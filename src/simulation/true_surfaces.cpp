@@ -41,7 +41,7 @@ bool TrueSurfaces::cast(const Eigen::Vector2d& from_m, const Eigen::Vector2d& di
     const Eigen::Vector2d along = edges_[i].to_m - edges_[i].from_m;
     const double determinant = cross(direction, along);
     // Outlines run counter-clockwise: only a side that faces the eye can be seen.
-    if (determinant <= 1e-12) continue;
+    if (determinant >= -1e-12) continue;
     const Eigen::Vector2d offset_m = edges_[i].from_m - from_m;
     const double range_m = cross(offset_m, along) / determinant;
     const double share = cross(offset_m, direction) / determinant;
