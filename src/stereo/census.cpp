@@ -8,7 +8,8 @@ namespace {
 
 constexpr int kReach_px = 2;
 // A bit is set when the pixel at +offset is brighter than the one at -offset.
-const std::array<cv::Point, kCensusBits> kOffsets_px{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}, {2, 1}, {-1, 2}}};
+const std::array<cv::Point, kCensusBits> kOffsets_px{
+    {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}, {2, 1}, {-1, 2}}};
 
 void censusRow(const cv::Mat1b& padded, int y, std::uint8_t* out, int width) {
   std::array<const std::uint8_t*, kCensusBits> ahead{}, behind{};

@@ -9,7 +9,8 @@ namespace cornerstone {
 namespace {
 
 constexpr int kLanes = 8;
-constexpr int kFineWeight = 9;  // the fine window against its 3 x 3: both count alike, summed over their pixels
+constexpr int kFineWeight =
+    9;  // the fine window against its 3 x 3: both count alike, summed over their pixels
 // Rows of a band are chosen so that what the sweep touches stays in the second-level cache.
 constexpr int kBandPixels = 24 * 1024;
 constexpr int kSmallestBand_rows = 32;
@@ -62,8 +63,8 @@ void CostSweep::prepare(const SweepInput& input) {
   fine_sums_.create(rows, width + 2 * input.window_px + kLanes);
   three_rows_.create(1, width + 2 * input.window_px + kLanes);
   for (cv::Mat1s& costs : costs_) costs.create(rows, width);
-  for (cv::Mat1s* plane : {&winners_.disparity_px, &winners_.cost, &winners_.cost_before, &winners_.cost_after,
-                           &winners_.second_cost})
+  for (cv::Mat1s* plane : {&winners_.disparity_px, &winners_.cost, &winners_.cost_before,
+                           &winners_.cost_after, &winners_.second_cost})
     plane->create(rows, width);
 }
 
@@ -116,13 +117,15 @@ void CostSweep::pairCosts(const Band& band, int disparity_px) {
   for (int row = band.first_pair; row < band.end_pair; ++row) {
     const SeenRow first = seenRow(input_.views[0], row, disparity_px);
     const SeenRow second = input_.views.size() > 1 ? seenRow(input_.views[1], row, disparity_px) : SeenRow();
-    pairCostRow((*input_.reference_census)[row], first, second, {0, size_px_.width}, pair_costs_[row] + radius_px_);
+    pairCostRow((*input_.reference_census)[row], first, second, {0, size_px_.width},
+                pair_costs_[row] + radius_px_);
     mirrorEnds(pair_costs_[row], radius_px_, size_px_.width);
   }
 }
 
 void CostSweep::fineSums(const Band& band) {
-  const int rows = size_px_.height, width = roundUp(size_px_.width + 2 * radius_px_), border = input_.window_px;
+  const int rows = size_px_.height, width = roundUp(size_px_.width + 2 * radius_px_),
+            border = input_.window_px;
   std::uint16_t* columns = column_sums_[0];
   std::fill(columns, columns + column_sums_.cols, std::uint16_t{0});
   for (int i = -radius_px_; i < radius_px_; ++i)
@@ -146,8 +149,10 @@ void CostSweep::windowCosts(const Band& band, int disparity_px) {
       cv::v_store(three + x, cv::v_load(above + x) + cv::v_load(middle + x) + cv::v_load(below + x));
     short* costs = costs_[0][row];
     for (int x = 0; x < width; x += kLanes) {
-      const cv::v_uint16x8 coarse = cv::v_load(three + x) + cv::v_load(three + x + step) + cv::v_load(three + x + 2 * step);
-      const cv::v_uint16x8 fine = cv::v_mul_wrap(cv::v_load(middle + x + step), cv::v_setall_u16(kFineWeight));
+      const cv::v_uint16x8 coarse =
+          cv::v_load(three + x) + cv::v_load(three + x + step) + cv::v_load(three + x + 2 * step);
+      const cv::v_uint16x8 fine =
+          cv::v_mul_wrap(cv::v_load(middle + x + step), cv::v_setall_u16(kFineWeight));
       cv::v_store(costs + x, cv::v_reinterpret_as_s16(coarse + fine));
     }
     maskUnseen(costs, row, disparity_px);
@@ -166,13 +171,15 @@ void CostSweep::maskUnseen(short* costs, int row, int disparity_px) const {
   std::fill(costs + std::max(end, 0), costs + size_px_.width, Winners::kNoCost);
 }
 
-// Looks at the costs of `disparity_px` (costs_[1]) between its neighbours (costs_[2] before, costs_[0] after).
+// Looks at the costs of `disparity_px` (costs_[1]) between its neighbours (costs_[2] before, costs_[0]
+// after).
 void CostSweep::keepBest(const Band& band, int disparity_px) {
   const cv::v_int16x8 none = cv::v_setall_s16(Winners::kNoCost);
   const cv::v_int16x8 candidate = cv::v_setall_s16(static_cast<short>(disparity_px));
   for (int row = band.first_row; row < band.end_row; ++row) {
     const short *before = costs_[2][row], *here = costs_[1][row], *after = costs_[0][row];
-    short *best = winners_.cost[row], *second = winners_.second_cost[row], *winner = winners_.disparity_px[row];
+    short *best = winners_.cost[row], *second = winners_.second_cost[row],
+          *winner = winners_.disparity_px[row];
     short *best_before = winners_.cost_before[row], *best_after = winners_.cost_after[row];
     for (int x = 0; x < size_px_.width; x += kLanes) {
       const cv::v_int16x8 b = cv::v_load(before + x), h = cv::v_load(here + x), a = cv::v_load(after + x);

@@ -36,7 +36,8 @@ inline cv::v_uint8x16 costOfTwo(const std::uint8_t* r, const std::uint8_t* a, co
       cv::v_add_wrap(halfByteCounts(reference ^ cv::v_load(a)), halfByteCounts(reference ^ cv::v_load(b))));
 }
 
-// Runs over a part of the row in whole vectors; the last one overlaps, a part shorter than a vector goes via a copy.
+// Runs over a part of the row in whole vectors; the last one overlaps, a part shorter than a vector goes via
+// a copy.
 void costPart(const std::uint8_t* reference, const std::uint8_t* a, const std::uint8_t* b, cv::Range part,
               std::uint8_t* costs) {
   if (part.size() >= kLanes) {
@@ -65,8 +66,8 @@ SeenRow seenRow(const SecondaryView& view, int row, int disparity_px) {
   return {std::max(0, -dx), census.cols - std::max(0, dx), census[row + dy] + dx};
 }
 
-void pairCostRow(const std::uint8_t* reference, const SeenRow& first, const SeenRow& second, cv::Range columns,
-                 std::uint8_t* costs) {
+void pairCostRow(const std::uint8_t* reference, const SeenRow& first, const SeenRow& second,
+                 cv::Range columns, std::uint8_t* costs) {
   std::array<int, 6> cuts{columns.start, first.begin, first.end, second.begin, second.end, columns.end};
   for (int& cut : cuts) cut = std::clamp(cut, columns.start, columns.end);
   std::sort(cuts.begin(), cuts.end());
@@ -78,8 +79,8 @@ void pairCostRow(const std::uint8_t* reference, const SeenRow& first, const Seen
     if (!in_first && !in_second)
       std::memset(costs + part.start, kCensusBits, static_cast<std::size_t>(part.size()));
     else
-      costPart(reference, in_first ? first.census : second.census, in_second ? second.census : first.census, part,
-               costs);
+      costPart(reference, in_first ? first.census : second.census, in_second ? second.census : first.census,
+               part, costs);
   }
 }
 

@@ -27,11 +27,13 @@ void requireUsable(const CameraCalibration& calibration) {
   }
   const Eigen::Matrix3d& rotation = calibration.rectification;
   const double skew = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(skew < kRotationTolerance) || rotation.determinant() < 0) throw InputError(name + ": R is not a rotation");
+  if (!(skew < kRotationTolerance) || rotation.determinant() < 0)
+    throw InputError(name + ": R is not a rotation");
   constexpr std::array<std::size_t, 6> kKnownCounts{0, 4, 5, 8, 12, 14};  // of cv::undistort
   const std::size_t count = calibration.distortion.size();
   if (std::find(kKnownCounts.begin(), kKnownCounts.end(), count) == kKnownCounts.end())
-    throw InputError(name + ": D has " + std::to_string(count) + " coefficients; 0, 4, 5, 8, 12 or 14 are known");
+    throw InputError(name + ": D has " + std::to_string(count) +
+                     " coefficients; 0, 4, 5, 8, 12 or 14 are known");
   for (const double coefficient : calibration.distortion) requireFinite(coefficient, name + ": D");
 }
 

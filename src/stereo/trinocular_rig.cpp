@@ -7,11 +7,13 @@
 namespace cornerstone {
 namespace {
 
-// Rectified cameras have one focal length and one principal point up to the digits a calibration file is written with.
-constexpr double kFocalTolerance = 1e-4;           // relative: 0.01 px of disparity at 100 px
-constexpr double kCentreTolerance_px = 0.01;       // a disparity offset: 0.3% of range at 3 px
-constexpr double kAcrossTolerance = 0.005;         // baseline's part across its axis: half a row at 100 px
-constexpr double kSmallestBaseline_focals = 1e-6;  // below: a P without baseline (in m, focal length divided out)
+// Rectified cameras have one focal length and one principal point up to the digits a calibration file is
+// written with.
+constexpr double kFocalTolerance = 1e-4;      // relative: 0.01 px of disparity at 100 px
+constexpr double kCentreTolerance_px = 0.01;  // a disparity offset: 0.3% of range at 3 px
+constexpr double kAcrossTolerance = 0.005;    // baseline's part across its axis: half a row at 100 px
+constexpr double kSmallestBaseline_focals =
+    1e-6;  // below: a P without baseline (in m, focal length divided out)
 
 void requireCalibrated(const CameraCalibration& camera) {
   const auto& projection = camera.projection_px;
@@ -76,7 +78,8 @@ TrinocularRig makeRig(const CameraCalibration& reference, const CameraCalibratio
     const cv::Point2d top_m = positionOf(reference, *top);
     requireAlongAxis(*top, top_m);
     const bool beside = std::abs(top_m.x) > std::abs(top_m.y);
-    rig.top_shift = beside ? cv::Point2d(-top_m.x / rig.baseline_m, 0) : cv::Point2d(0, -top_m.y / rig.baseline_m);
+    rig.top_shift =
+        beside ? cv::Point2d(-top_m.x / rig.baseline_m, 0) : cv::Point2d(0, -top_m.y / rig.baseline_m);
   }
   return rig;
 }

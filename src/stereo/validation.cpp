@@ -24,7 +24,8 @@ void Validator::check(const Winners& winners, const SweepInput& input, const Val
   rejection.create(size);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
-      rejection(y, x) = codeOf(checkPixel(winners, {x, y}, input.max_disparity_px, params.largest_cost_ratio));
+      rejection(y, x) =
+          codeOf(checkPixel(winners, {x, y}, input.max_disparity_px, params.largest_cost_ratio));
   for (const SecondaryView& view : input.views)
     checkSecondary(winners, view.shift, params.left_right_tolerance_px, rejection);
 }
@@ -37,7 +38,8 @@ void Validator::checkSecondary(const Winners& winners, const cv::Point2d& shift,
   claim_cost_.setTo(Winners::kNoCost);
   const auto seenAt = [&](int x, int y) {
     const int d = winners.disparity_px(y, x);
-    return cv::Point(x + static_cast<int>(std::lround(shift.x * d)), y + static_cast<int>(std::lround(shift.y * d)));
+    return cv::Point(x + static_cast<int>(std::lround(shift.x * d)),
+                     y + static_cast<int>(std::lround(shift.y * d)));
   };
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -51,7 +53,8 @@ void Validator::checkSecondary(const Winners& winners, const cv::Point2d& shift,
     for (int x = 0; x < image.width; ++x) {
       if (rejection(y, x) != codeOf(Rejection::kNone)) continue;
       const cv::Point seen = seenAt(x, y);
-      if (image.contains(seen) && std::abs(claim_disparity_px_(seen) - winners.disparity_px(y, x)) > tolerance_px)
+      if (image.contains(seen) &&
+          std::abs(claim_disparity_px_(seen) - winners.disparity_px(y, x)) > tolerance_px)
         rejection(y, x) = codeOf(Rejection::kLeftRight);
     }
   }

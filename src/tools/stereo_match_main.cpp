@@ -47,12 +47,14 @@ double medianOf(std::vector<double> values) {
 }
 
 Outcome run(int argc, const char* const* argv) {
-  const Arguments arguments(argc, argv, "stereo_match REF.png RIGHT.png [--top TOP.png] [--max-disparity N] --out OUT.png",
-                            2, {"top", "max-disparity", "out"});
+  const Arguments arguments(
+      argc, argv, "stereo_match REF.png RIGHT.png [--top TOP.png] [--max-disparity N] --out OUT.png", 2,
+      {"top", "max-disparity", "out"});
   if (!arguments.has("out")) throw InputError("--out is missing");
   const StereoImages images{readGrey(arguments.positional(0)), readGrey(arguments.positional(1)),
                             arguments.has("top") ? readGrey(arguments.text("top")) : cv::Mat1b()};
-  for (const auto& [name, image] : {std::pair(arguments.positional(1), images.right), {arguments.text("top"), images.top}})
+  for (const auto& [name, image] :
+       {std::pair(arguments.positional(1), images.right), {arguments.text("top"), images.top}})
     if (!image.empty() && image.size() != images.reference.size())
       throw InputError(name + ": size differs from that of " + arguments.positional(0));
 
@@ -67,12 +69,14 @@ Outcome run(int argc, const char* const* argv) {
   for (int i = 0; i < kRepeats; ++i) {
     const auto start = std::chrono::steady_clock::now();
     disparity = matcher.match(images, rig);
-    elapsed_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    elapsed_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
   cv::Mat encoded;
   disparity.disparity_px.convertTo(encoded, CV_16U, kFileUnits);
   writeWhole(arguments.text("out"), encoded);
-  const double answered = static_cast<double>(cv::countNonZero(encoded)) / static_cast<double>(encoded.total());
+  const double answered =
+      static_cast<double>(cv::countNonZero(encoded)) / static_cast<double>(encoded.total());
   return {kExitDone, {{"elapsed_ms", medianOf(elapsed_ms)}, {"density", answered}}};
 }
 

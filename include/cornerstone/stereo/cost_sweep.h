@@ -1,10 +1,11 @@
-// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed over a fine
-// window and the 3 x 3 of them around (a coarse one), and each pixel keeps its best and second-best local minimum.
+// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed
+// over a fine window and the 3 x 3 of them around (a coarse one), and each pixel keeps its best and
+// second-best local minimum.
 //
 //   cost(x, y, d) = 9 * fine(x, y, d) + sum of fine(x + i w, y + j w, d) for i, j in -1..1
 //
-// Where one camera does not see a pixel the other's cost counts double, so that windows across its border stay fair;
-// where none does, chance is assumed.
+// Where one camera does not see a pixel the other's cost counts double, so that windows across its border
+// stay fair; where none does, chance is assumed.
 #pragma once
 
 #include <array>
@@ -57,11 +58,11 @@ class CostSweep {
   SweepInput input_;
   cv::Size size_px_;
   int radius_px_ = 0;
-  cv::Mat1b pair_costs_;             // per pixel, summed over cameras, with borders reflected
+  cv::Mat1b pair_costs_;  // per pixel, summed over cameras, with borders reflected
   cv::Mat_<std::uint16_t> column_sums_;
   cv::Mat_<std::uint16_t> fine_sums_;  // with borders reflected
   cv::Mat_<std::uint16_t> three_rows_;
-  std::array<cv::Mat1s, 3> costs_;   // of the disparities d, d - 1, d - 2
+  std::array<cv::Mat1s, 3> costs_;  // of the disparities d, d - 1, d - 2
   Winners winners_;
 };
 

@@ -1,7 +1,8 @@
-// Dense correlation stereo over two or three rectified cameras: the matching cost of each candidate disparity of a
-// reference pixel is summed over the camera pairs before the best is chosen (Okutomi and Kanade, 1993).
+// Dense correlation stereo over two or three rectified cameras: the matching cost of each candidate disparity
+// of a reference pixel is summed over the camera pairs before the best is chosen (Okutomi and Kanade, 1993).
 //
-// census -> plane sweep (cost_sweep.h) -> checks (validation.h) -> sub-pixel and sigma (subpixel.h) -> surfaces
+// census -> plane sweep (cost_sweep.h) -> checks (validation.h) -> sub-pixel and sigma (subpixel.h) ->
+// surfaces
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -22,20 +23,21 @@ struct StereoImages {  // rectified grey images of one instant and of one size
 };
 
 struct StereoParams {
-  // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px, B 0.12 m).
+  // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px, B 0.12
+  // m).
   int max_disparity_px = 32;
-  // Edge of the fine correlation window, odd, 3 to 9; the coarse one is three times it. Smaller: noisier answers.
-  // Larger: obstacles grow by up to half of it.
+  // Edge of the fine correlation window, odd, 3 to 9; the coarse one is three times it. Smaller: noisier
+  // answers. Larger: obstacles grow by up to half of it.
   int window_px = 7;
   // A pixel's best cost must be below this share of its second-best local minimum. 0.8: few and safe; 1: all.
   double largest_cost_ratio = 0.93;
   // Two reference pixels that a second camera would see at one place may differ by this much.
   int left_right_tolerance_px = 1;
-  // Answers less certain than this have too little texture (or their cameras disagree): 0.5 px is what whole-pixel
-  // matching is worth.
-  double largest_sigma_px = 0.5;
+  // Answers less certain than this have too little texture (or their cameras disagree): 0.5 px is what
+  // whole-pixel matching is worth.
+  double largest_sigma_px = 0.3;
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
-  int subpixel_support_px = 9;
+  int subpixel_support_px = 7;
   // A surface with a smaller share of the image's pixels is dropped: 1/500 is 38 px of 160x120.
   double smallest_surface_share = 0.002;
   // Neighbours that differ by more are on different surfaces.
@@ -52,7 +54,7 @@ class StereoMatcher {
 
  private:
   void sweep(const StereoImages& images, const TrinocularRig& rig);
-  void refine(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
+  void refine(Disparity& disparity);
   void dropSmallSurfaces(Disparity& disparity);
 
   StereoParams params_;
@@ -63,8 +65,6 @@ class StereoMatcher {
   const Winners* winners_ = nullptr;
   Validator validator_;
   SubpixelRefiner refiner_;
-  SubpixelInput subpixel_input_;
-  cv::Mat1s valid_winners_px_;
   cv::Mat1s surfaces_;
   cv::Mat surface_buffer_;
 };

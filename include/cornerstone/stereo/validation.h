@@ -17,11 +17,14 @@ struct ValidationParams {
 class Validator {
  public:
   // Sets `rejection` to kNone, kOutside, kUniqueness, kLeftRight or kRange for every pixel of the image.
-  void check(const Winners& winners, const SweepInput& input, const ValidationParams& params, cv::Mat1b& rejection);
+  void check(const Winners& winners, const SweepInput& input, const ValidationParams& params,
+             cv::Mat1b& rejection);
 
  private:
-  // Two reference pixels that a secondary camera would see at one place: only the better matching one can be right.
-  void checkSecondary(const Winners& winners, const cv::Point2d& shift, int tolerance_px, cv::Mat1b& rejection);
+  // Two reference pixels that a secondary camera would see at one place: only the better matching one can be
+  // right.
+  void checkSecondary(const Winners& winners, const cv::Point2d& shift, int tolerance_px,
+                      cv::Mat1b& rejection);
 
   cv::Mat1s claim_cost_, claim_disparity_px_;
 };
