@@ -42,7 +42,7 @@ double overlapOf(const EvidenceGrid& reference, const EvidenceGrid& current, con
 
 // The prior, what the paper's matching makes of it, and poses all around it.
 std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, const MapView& current,
-                                 const Eigen::Vector2d& middle_m, const RegistrationParams& params) {
+                                 const RegistrationParams& params) {
   std::vector<Pose2> poses{prior};
   for (int round = 0; round < 2; ++round) {
     const CornerPairs pairs = pairNearest(reference.landmarks.corners, current.landmarks.corners,
@@ -51,15 +51,13 @@ std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, c
         solvePairs(reference.landmarks.corners, current.landmarks.corners, pairs, poses.back());
     if (solved) poses.push_back(*solved);
   }
-  const Eigen::Vector2d middle = prior * middle_m;
   const int steps = static_cast<int>(std::ceil(params.prior_radius_m / kPriorStep_m));
   const int turns = static_cast<int>(std::ceil(params.prior_angle_rad / kPriorStep_rad));
   for (int i = -steps; i <= steps; ++i) {
     for (int j = -steps; j <= steps; ++j) {
       for (int k = -turns; k <= turns; ++k) {
-        const Pose2 turned{0, 0, wrapAngle(prior.yaw_rad + k * kPriorStep_rad)};
-        const Eigen::Vector2d shift = middle + kPriorStep_m * Eigen::Vector2d(i, j) - turned * middle_m;
-        poses.push_back({shift.x(), shift.y(), turned.yaw_rad});
+        poses.push_back({prior.x_m + i * kPriorStep_m, prior.y_m + j * kPriorStep_m,
+                         wrapAngle(prior.yaw_rad + k * kPriorStep_rad)});
       }
     }
   }
@@ -74,10 +72,10 @@ std::vector<Pose2> propose(const MapView& reference, const MapView& current, con
 }
 
 // Far from the prior nothing counts, neither as an answer nor as a rival.
-void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const Eigen::Vector2d& middle_m,
-              const RegistrationParams& params) {
+void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const RegistrationParams& params) {
+  const Eigen::Vector2d origin(0, 0);  // of the current map's frame: what the prior places
   const auto is_far = [&](const Hypothesis& h) {
-    return areDifferent(h.reference_from_current, prior, middle_m, params.prior_radius_m,
+    return areDifferent(h.reference_from_current, prior, origin, params.prior_radius_m,
                         params.prior_angle_rad);
   };
   hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), is_far), hypotheses.end());
@@ -95,11 +93,10 @@ std::optional<Registration> registerMaps(const MapView& reference, const MapView
   if (reference.landmarks.edges.empty()) return refuse("the reference map has no edges");
   if (current.landmarks.edges.empty()) return refuse("the current map has no edges");
   const MapEvidence there = evidenceOf(reference, params), here = evidenceOf(current, params);
-  const std::vector<Pose2> proposals = prior
-                                           ? proposeAround(*prior, reference, current, here.middle_m, params)
-                                           : propose(reference, current, there, here);
+  const std::vector<Pose2> proposals =
+      prior ? proposeAround(*prior, reference, current, params) : propose(reference, current, there, here);
   std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
-  if (prior) keepNear(best, *prior, here.middle_m, params);
+  if (prior) keepNear(best, *prior, params);
   if (best.empty() || best.front().value <= 0) return refuse("no pose agrees with both maps");
   const Hypothesis& winner = best.front();
 

@@ -22,7 +22,7 @@ void requireUsable(const StereoParams& params) {
   requireWithin(params.largest_cost_ratio, 0, 1, "largest_cost_ratio");
   requireWithin(params.left_right_tolerance_px, 0, kMaxDisparity_px, "left_right_tolerance_px");
   requirePositive(params.largest_sigma_px, "largest_sigma_px");
-  requireWithin(params.subpixel_support_px, 3, 31, "subpixel_support_px");
+  requireWithin(params.subpixel_support_px, 1, 31, "subpixel_support_px");
   requireOdd(params.subpixel_support_px, "subpixel_support_px");
   requireWithin(params.smallest_surface_share, 0, 1, "smallest_surface_share");
   requirePositive(params.surface_step_px, "surface_step_px");
@@ -61,7 +61,7 @@ Disparity StereoMatcher::match(const StereoImages& images, const TrinocularRig& 
   sweep(images, rig);
   validator_.check(*winners_, sweep_input_, {params_.largest_cost_ratio, params_.left_right_tolerance_px},
                    disparity.rejection);
-  refine(images, rig, disparity);
+  refine(disparity);
   dropSmallSurfaces(disparity);
   return disparity;
 }
@@ -80,27 +80,13 @@ void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) 
   winners_ = &cost_sweep_.run(sweep_input_);
 }
 
-void StereoMatcher::refine(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity) {
-  valid_winners_px_.create(disparity.rejection.size());
-  for (int y = 0; y < valid_winners_px_.rows; ++y)
-    for (int x = 0; x < valid_winners_px_.cols; ++x)
-      valid_winners_px_(y, x) = disparity.rejection(y, x) == 0 ? winners_->disparity_px(y, x) : short{0};
-  subpixel_input_.reference = &images.reference;
-  subpixel_input_.winners_px = &valid_winners_px_;
-  subpixel_input_.views.assign(1, {&images.right, rig.right_shift});
-  if (!images.top.empty()) subpixel_input_.views.push_back({&images.top, *rig.top_shift});
-  refiner_.refine(subpixel_input_, {params_.subpixel_support_px}, disparity.disparity_px, disparity.sigma_px);
+void StereoMatcher::refine(Disparity& disparity) {
+  refiner_.refine({winners_, &disparity.rejection}, {params_.subpixel_support_px}, disparity.disparity_px,
+                  disparity.sigma_px);
   const auto largest_sigma = static_cast<float>(params_.largest_sigma_px);
-  for (int y = 0; y < valid_winners_px_.rows; ++y) {
-    for (int x = 0; x < valid_winners_px_.cols; ++x) {
-      const short winner = valid_winners_px_(y, x);
-      if (winner == 0) continue;
-      const float refined = disparity.disparity_px(y, x);
-      // A step of more than a pixel contradicts the winner: the equations had nothing to hold on to.
-      if (refined <= 0 || std::abs(refined - winner) > 1 || disparity.sigma_px(y, x) > largest_sigma)
-        reject(disparity, y, x, Rejection::kTexture);
-    }
-  }
+  for (int y = 0; y < disparity.rejection.rows; ++y)
+    for (int x = 0; x < disparity.rejection.cols; ++x)
+      if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, y, x, Rejection::kTexture);
 }
 
 void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {

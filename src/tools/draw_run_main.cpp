@@ -29,8 +29,11 @@ std::vector<std::string> drawMaps(const RunRecording& run, const std::string& fo
   if (run.registrations.empty()) return written;
   const MapRegistration& last = run.registrations.back();
   if (landmarks.count(last.reference_robot) == 0 || landmarks.count(last.current_robot) == 0) return written;
-  const Overlay overlay{run.robots.at(last.reference_robot).map, landmarks[last.reference_robot],
-                        run.robots.at(last.current_robot).map, landmarks[last.current_robot], {}};
+  const Overlay overlay{run.robots.at(last.reference_robot).map,
+                        landmarks[last.reference_robot],
+                        run.robots.at(last.current_robot).map,
+                        landmarks[last.current_robot],
+                        {}};
   write(pictureOfOverlay(overlay, Pose2{}), "overlay_before.png");
   if (last.state == MapRegistration::REGISTERED)
     write(pictureOfOverlay(overlay, {last.x, last.y, last.yaw}), "overlay_after.png");
@@ -47,7 +50,8 @@ Outcome drawRun(const Arguments& arguments) {
   if (run.robots.count(robot) == 0 || run.robots.at(robot).truth.empty())
     throw InputError(run.path + ": no robot '" + robot + "'");
   const double start_s = run.robots.at(robot).truth.front().time_s;
-  writePicture(pictureOfOneFrame(run.path, robot, start_s + arguments.number("at", 5)), folder + "/figure_2.png");
+  writePicture(pictureOfOneFrame(run.path, robot, start_s + arguments.number("at", 5)),
+               folder + "/figure_2.png");
   written.push_back("figure_2.png");
   return {kExitDone, {{"folder", folder}, {"pictures", written}}};
 }
@@ -56,7 +60,7 @@ Outcome drawRun(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   return runProgram("draw_run", [&] {
-    return drawRun(Arguments(argc, argv, "draw_run BAG_OR_RESULTS --out FOLDER [--robot NAME] [--at SECONDS]", 1,
-                             {"out", "robot", "at"}));
+    return drawRun(Arguments(argc, argv, "draw_run BAG_OR_RESULTS --out FOLDER [--robot NAME] [--at SECONDS]",
+                             1, {"out", "robot", "at"}));
   });
 }

@@ -16,7 +16,8 @@ const cv::Vec3b kUnknownGrey{205, 205, 205};
 
 // The part of a map that was seen.
 cv::Rect seenPart(const GridMap& map) {
-  cv::Mat1b seen = map.occupied != kUnseen;
+  cv::Mat seen;
+  cv::compare(map.occupied, kUnseen, seen, cv::CMP_NE);
   return cv::boundingRect(seen);
 }
 

@@ -22,9 +22,10 @@
 namespace cornerstone {
 namespace {
 
-constexpr int kZoom = 2;             // of the camera's images
-constexpr double kDeepest_m = 8;     // of the depth plot
-constexpr float kPlotSigma_px = 0.1f;  // for the view from above: a typical pixel's, the bag does not hold sigma
+constexpr int kZoom = 2;          // of the camera's images
+constexpr double kDeepest_m = 8;  // of the depth plot
+constexpr float kPlotSigma_px =
+    0.1f;  // for the view from above: a typical pixel's, the bag does not hold sigma
 
 struct Frame {
   cv::Mat1b grey;
@@ -37,7 +38,8 @@ Frame readFrame(const std::string& path, const std::string& robot, double time_s
   const std::vector<std::string> topics{"/" + robot + "/reference/image_rect", "/" + robot + "/disparity"};
   sensor_msgs::ImageConstPtr image;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topics))) {
-    if (const auto found = message.instantiate<sensor_msgs::Image>(); found && found->header.stamp.toSec() >= time_s && !image)
+    if (const auto found = message.instantiate<sensor_msgs::Image>();
+        found && found->header.stamp.toSec() >= time_s && !image)
       image = found;
     const auto disparity = message.instantiate<stereo_msgs::DisparityImage>();
     if (!disparity || !image || disparity->header.stamp != image->header.stamp) continue;
@@ -52,7 +54,8 @@ Frame readFrame(const std::string& path, const std::string& robot, double time_s
     frame.frame_id = disparity->header.frame_id;
     return frame;
   }
-  throw InputError(path + ": no image and disparity of robot " + robot + " at " + std::to_string(time_s) + " s");
+  throw InputError(path + ": no image and disparity of robot " + robot + " at " + std::to_string(time_s) +
+                   " s");
 }
 
 cv::Mat3b enlarged(const cv::Mat& image) {
@@ -96,7 +99,8 @@ cv::Mat3b viewFromAbove(const RangeScan& scan, cv::Size size) {
   Canvas canvas = Canvas::over({{&map, Pose2{0, 0, M_PI / 2}}}, std::max(size.width, size.height));
   drawMap(canvas, map, Pose2{0, 0, M_PI / 2});
   cv::Mat3b fitted(size, cv::Vec3b(127, 127, 127));
-  const double zoom = std::min(size.width / double(canvas.image.cols), size.height / double(canvas.image.rows));
+  const double zoom =
+      std::min(size.width / double(canvas.image.cols), size.height / double(canvas.image.rows));
   cv::Mat3b small;
   cv::resize(canvas.image, small, {}, zoom, zoom, cv::INTER_AREA);
   small.copyTo(fitted(cv::Rect(0, 0, small.cols, small.rows)));

@@ -25,8 +25,8 @@ struct RegistrationParams {
   double refine_reach_m = 0.3;  // first search radius of the refinement; it shrinks to the edges' scatter
   double max_second_best =
       0.80;  // score of the best different pose over the winner's, above which nothing stands out
-  double min_agreement = 0.7;   // agreeing share of the edges that the other map can judge
-  double min_agreeing_m = 8.0;  // length of wall that agrees: less may be a coincidence of a few walls
+  double min_agreement = 0.75;   // agreeing share of the edges that the other map can judge
+  double min_agreeing_m = 20.0;  // length of wall that agrees: less may be a coincidence of a few walls
   double min_spread =
       0.05;  // weakest over strongest direction of the information: a corridor has next to none
 };

@@ -35,9 +35,9 @@ struct StereoParams {
   int left_right_tolerance_px = 1;
   // Answers less certain than this have too little texture (or their cameras disagree): 0.5 px is what
   // whole-pixel matching is worth.
-  double largest_sigma_px = 0.5;
+  double largest_sigma_px = 0.3;
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
-  int subpixel_support_px = 9;
+  int subpixel_support_px = 7;
   // A surface with a smaller share of the image's pixels is dropped: 1/500 is 38 px of 160x120.
   double smallest_surface_share = 0.002;
   // Neighbours that differ by more are on different surfaces.
@@ -54,7 +54,7 @@ class StereoMatcher {
 
  private:
   void sweep(const StereoImages& images, const TrinocularRig& rig);
-  void refine(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
+  void refine(Disparity& disparity);
   void dropSmallSurfaces(Disparity& disparity);
 
   StereoParams params_;
@@ -65,8 +65,6 @@ class StereoMatcher {
   const Winners* winners_ = nullptr;
   Validator validator_;
   SubpixelRefiner refiner_;
-  SubpixelInput subpixel_input_;
-  cv::Mat1s valid_winners_px_;
   cv::Mat1s surfaces_;
   cv::Mat surface_buffer_;
 };
