@@ -1,9 +1,10 @@
-// Bayes' rule for one beam over the cells it crosses (sensor cause model; Agha-mohammadi et al. 2019, cf. Thrun 2003).
+// Bayes' rule for one beam over the cells it crosses (sensor cause model; Agha-mohammadi et al. 2019, cf.
+// Thrun 2003).
 //
 // With P_i the probability that cell i along the beam is occupied, the surface that was measured at z is
 //   cell i with  c_i ~ P_i prod_{j<i} (1 - P_j) N(z; r_i, sigma),
-// or none of them (mismatch) with probability o. Then P(i occupied | z) = (1 - o) (c_i + B_i P_i) + o P_i, where
-// B_i = sum_{j<i} c_j: what lies behind the surface stays as it was, what lies before it is free.
+// or none of them (mismatch) with probability o. Then P(i occupied | z) = (1 - o) (c_i + B_i P_i) + o P_i,
+// where B_i = sum_{j<i} c_j: what lies behind the surface stays as it was, what lies before it is free.
 #pragma once
 
 #include <vector>
@@ -36,7 +37,7 @@ class BeamEvidence {
   const CellWindow& window_;
   const OccupancyGrid& grid_;
   double step_m_;
-  double sigma_m_;       // with the cell's own extent
+  double sigma_m_;  // with the cell's own extent
   double sigma_near_m_;
   double sigma_far_m_;
   double start_m_;

@@ -12,7 +12,8 @@ constexpr float kUnseen = 0.5f;
 
 struct GridMap {
   GridGeometry geometry;
-  cv::Mat1f occupied;  // probability in [0, 1], rows x cols, row 0 at the smallest y; kUnseen exactly: never seen
+  cv::Mat1f
+      occupied;  // probability in [0, 1], rows x cols, row 0 at the smallest y; kUnseen exactly: never seen
 };
 
 }  // namespace cornerstone

@@ -1,5 +1,5 @@
-// One look of a range sensor in the plane: a beam per image column (or laser ray), in the sensor's planar frame.
-// A beam without an answer says nothing at all: it is never "free to the end".
+// One look of a range sensor in the plane: a beam per image column (or laser ray), in the sensor's planar
+// frame. A beam without an answer says nothing at all: it is never "free to the end".
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ struct Beam {
   double range_m = 0;      // to the obstacle, along the bearing
   double near_m = 0;       // interval of uncertainty around range_m, 2 sigma each side: the paper's Fig. 2e
   double far_m = 0;
-  double sigma_m = 0;      // standard deviation of range_m
-  double clear_m = 0;      // free up to here, <= near_m
+  double sigma_m = 0;  // standard deviation of range_m
+  double clear_m = 0;  // free up to here, <= near_m
 };
 
 struct RangeScan {
