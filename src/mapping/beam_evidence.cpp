@@ -27,6 +27,7 @@ double BeamEvidence::density(double range_m) const {
 
 void BeamEvidence::trace(const Eigen::Vector2d& origin_m, double heading_rad) {
   const Eigen::Vector2d direction(std::cos(heading_rad), std::sin(heading_rad));
+  point_m_ = origin_m + beam_.range_m * direction;
   transmission_.clear();
   behind_.clear();
   std::vector<float> cause;

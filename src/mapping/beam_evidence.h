@@ -23,7 +23,7 @@ class BeamEvidence {
   double start_m() const { return start_m_; }  // nearer cells are free but for mismatches
   double clear_m() const { return beam_.clear_m; }
   double outlier() const { return outlier_; }
-  double range_m() const { return beam_.range_m; }
+  const Eigen::Vector2d& end() const { return point_m_; }  // the surface as measured, in the map frame
   double sigma_m() const { return sigma_m_; }
   // Probability that the cell at this range with probability `occupied` is the surface measured.
   double causeOf(double range_m, double occupied) const;
@@ -34,6 +34,7 @@ class BeamEvidence {
   double density(double range_m) const;  // N(z; range, sigma) in 1/m; two-sided: the far side is wider
 
   Beam beam_;
+  Eigen::Vector2d point_m_ = Eigen::Vector2d::Zero();
   const CellWindow& window_;
   const OccupancyGrid& grid_;
   double step_m_;

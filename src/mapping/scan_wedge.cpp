@@ -121,10 +121,8 @@ void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, doub
   evidence = updated(evidence, change, new_share);
   if (look.cause < kMinHitCause) return;
   const double sigma_m = look.beam->sigma_m();
-  const Eigen::Vector2d point_m =
-      map_from_sensor_.translation() + from_sensor_m * (look.beam->range_m() / std::max(range_m, 1e-6));
   hits_.push_back({{window_.first.col + cell.col, window_.first.row + cell.row},
-                   point_m,
+                   look.beam->end(),
                    new_share * look.cause / (sigma_m * sigma_m)});
 }
 

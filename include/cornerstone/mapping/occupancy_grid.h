@@ -29,7 +29,7 @@ struct GridParams {
       1.0;  // largest log-odds one look takes from a cell: a box that goes is free after 10 looks
   double occupied_step =
       3.0;  // largest log-odds one look adds to a cell: a new obstacle is there after 2 looks
-  double min_log_odds = -4;  // evidence is held within these, so that the map stays able to change
+  double min_log_odds = -3;  // evidence is held within these, so that the map stays able to change
   double max_log_odds = 7;
 };
 void describe(ParamVisitor& visitor, GridParams& params);

@@ -25,7 +25,7 @@ struct ScanParams {
   // obstacle.
   int min_caution_px = 3;
   double agree_sigmas = 2.5;  // pixels this near to each other, in their own sigmas, show one surface
-  double height_sigmas = 2;   // a point counts as inside the band when it is so by this many sigmas
+  double height_sigmas = 3;   // a point counts as inside the band when it is so by this many sigmas
   // Pixels that share one matching error, an edge of the matcher's window: averaging n pixels counts as n /
   // this.
   double correlated_px = 9;
