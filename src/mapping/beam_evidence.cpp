@@ -27,6 +27,7 @@ double BeamEvidence::density(double range_m) const {
 
 void BeamEvidence::trace(const Eigen::Vector2d& origin_m, double heading_rad) {
   const Eigen::Vector2d direction(std::cos(heading_rad), std::sin(heading_rad));
+  point_m_ = origin_m + beam_.range_m * direction;
   transmission_.clear();
   behind_.clear();
   std::vector<float> cause;
@@ -34,7 +35,8 @@ void BeamEvidence::trace(const Eigen::Vector2d& origin_m, double heading_rad) {
   const double last_m = beam_.range_m + kReachSigmas * sigma_far_m_;
   for (double range_m = start_m_ + step_m_ / 2; range_m < last_m; range_m += step_m_) {
     const Cell cell = window_.geometry.cellAt(origin_m + range_m * direction);
-    const double occupied = grid_.scale().occupied(window_.geometry.contains(cell) ? window_.at(cell) : EvidenceCell{0});
+    const double occupied =
+        grid_.scale().occupied(window_.geometry.contains(cell) ? window_.at(cell) : EvidenceCell{0});
     const double hazard = 1 - std::sqrt(1 - occupied);  // a step is half a cell
     transmission_.push_back(static_cast<float>(transmission));
     cause.push_back(static_cast<float>(hazard * transmission * density(range_m)));

@@ -33,9 +33,11 @@ EvidenceCell EvidenceScale::cellOf(double log_odds) {
 EvidenceCell EvidenceScale::fromPublished(float probability) const {
   if (probability == kUnseen) return 0;
   // Published probabilities fall as the cell's value (evidence for free) rises.
-  const auto first = std::lower_bound(published_.begin(), published_.end(), probability, std::greater<float>());
+  const auto first =
+      std::lower_bound(published_.begin(), published_.end(), probability, std::greater<float>());
   auto best = first == published_.end() ? first - 1 : first;
-  if (best != published_.begin() && std::abs(*(best - 1) - probability) < std::abs(*best - probability)) --best;
+  if (best != published_.begin() && std::abs(*(best - 1) - probability) < std::abs(*best - probability))
+    --best;
   const auto value = static_cast<int>(best - published_.begin()) - kLargest;
   if (value == 0) return static_cast<EvidenceCell>(probability > kUnseen ? -1 : 1);
   return static_cast<EvidenceCell>(value);

@@ -22,7 +22,8 @@ constexpr double kMaxCells = 1e8;  // 250,000 m2 at 5 cm
 void requireSize(int cols, int rows, const std::string& path) {
   if (cols <= 0 || rows <= 0) throw InputError(path + ": the map has no cells");
   if (1.0 * cols * rows > kMaxCells)
-    throw InputError(path + ": " + std::to_string(cols) + " x " + std::to_string(rows) + " cells are too many");
+    throw InputError(path + ": " + std::to_string(cols) + " x " + std::to_string(rows) +
+                     " cells are too many");
 }
 
 struct MapPixels {
@@ -135,7 +136,8 @@ void writeWhole(const std::filesystem::path& path, const char* bytes, std::size_
 }  // namespace
 
 GridMap loadMap(const std::string& path) {
-  return endsWith(path, ".gridmap") || endsWith(path, ".gridmap.gz") ? loadMrptMap(path) : loadServerMap(path);
+  return endsWith(path, ".gridmap") || endsWith(path, ".gridmap.gz") ? loadMrptMap(path)
+                                                                     : loadServerMap(path);
 }
 
 void saveMap(const GridMap& map, const std::string& yaml_path) {

@@ -27,26 +27,29 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.field("max_contradictions", params.max_contradictions);
 }
 
-Mapper::Mapper(const MapperParams& params) : params_(params), grid_(params.grid) {
+Mapper::Mapper(const MapperParams& params) : params_(params), grid_(params.grid), filter_(params.odometry) {
   requireValid(params.fit);
-  requireValid(params.odometry);
   requirePositive(params.new_look_m, "new_look_m");
   requirePositive(params.new_look_rad, "new_look_deg");
   requireWithin(params.min_new_share, 0.001, 1, "min_new_share");
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
 
-PoseEstimate Mapper::predicted(const Pose2& odom_from_base) const {
-  if (start_) return {*start_, handCovariance()};
-  if (!last_odom_) return {map_from_odom_ * odom_from_base, startCovariance()};
-  const Pose2 step = last_odom_->inverse() * odom_from_base;
-  return {pose_.map_from_base * step, composeCovariance(pose_.map_from_base, pose_.covariance, step,
-                                                        stepCovariance(step, params_.odometry))};
+void Mapper::predict(const Pose2& odom_from_base) {
+  if (start_) {
+    filter_.place({*start_, handCovariance()});
+  } else if (!last_odom_) {
+    filter_.place({map_from_odom_ * odom_from_base, startCovariance()});
+  } else {
+    filter_.step(last_odom_->inverse() * odom_from_base);
+  }
+  start_.reset();
+  last_odom_ = odom_from_base;
 }
 
 double Mapper::newShare() const {
   if (!last_inserted_) return 1;
-  const Pose2 moved = last_inserted_->inverse() * pose_.map_from_base;
+  const Pose2 moved = last_inserted_->inverse() * filter_.pose().map_from_base;
   const double share =
       moved.translation().norm() / params_.new_look_m + std::abs(moved.yaw_rad) / params_.new_look_rad;
   return std::clamp(share, params_.min_new_share, 1.0);
@@ -54,30 +57,28 @@ double Mapper::newShare() const {
 
 MapperUpdate Mapper::update(const RangeScan& scan, const Pose2& odom_from_base) {
   if (!odom_from_base.isFinite()) throw InputError("odometry: odom_from_base is not finite");
-  const PoseEstimate prior = predicted(odom_from_base);
+  predict(odom_from_base);
   ScanFit fit;
-  fit.pose = prior;
-  if (params_.fit_scans) fit = fitScan(scan, grid_, prior, params_.fit);
+  if (params_.fit_scans) fit = fitScan(scan, grid_, filter_.pose(), params_.fit);
+  if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
   contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
-  pose_ = fit.pose;
-  last_odom_ = odom_from_base;
-  start_.reset();
-  map_from_odom_ = pose_.map_from_base * odom_from_base.inverse();
+  const Pose2 map_from_base = filter_.pose().map_from_base;
+  map_from_odom_ = map_from_base * odom_from_base.inverse();
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
   const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
   if (insert) {
-    grid_.insert(scan, pose_.map_from_base, newShare());
-    last_inserted_ = pose_.map_from_base;
+    grid_.insert(scan, map_from_base, newShare());
+    last_inserted_ = map_from_base;
   }
-  return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, pose_.covariance};
+  return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
 }
 
 void Mapper::reset() {
   grid_.clear();
-  pose_ = {};
+  filter_ = OdometryFilter(params_.odometry);
   map_from_odom_ = {};
   last_odom_.reset();
   start_.reset();

@@ -20,7 +20,8 @@ bool finite(const RangeScan& scan) {
   });
 }
 
-// Calls part(tile index, first cell within the tile, first cell within the window, count of columns) row by row.
+// Calls part(tile index, first cell within the tile, first cell within the window, count of columns) row by
+// row.
 template <typename Part>
 void forEachRowPart(const CellWindow& window, const Part& part) {
   for (int row = 0; row < window.geometry.rows; ++row) {
@@ -65,7 +66,8 @@ OccupancyGrid::OccupancyGrid(const GridParams& params) : params_(params), scale_
 void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, double new_share) {
   if (!map_from_base.isFinite() || !scan.base_from_sensor.isFinite())
     throw InputError("pose of the range scan is not finite");
-  if (!finite(scan)) throw InputError("range scan: a beam is not finite or its interval is not around its range");
+  if (!finite(scan))
+    throw InputError("range scan: a beam is not finite or its interval is not around its range");
   if (std::none_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; })) return;
   ScanWedge wedge(scan, map_from_base * scan.base_from_sensor, *this);
   wedge.apply(std::clamp(new_share, 0.0, 1.0));
@@ -92,15 +94,16 @@ void OccupancyGrid::load(const GridMap& map) {
   for (int row = 0; row < from.rows; ++row)
     for (int col = 0; col < from.cols; ++col) {
       const double log_odds = EvidenceScale::logOddsOf(scale_.fromPublished(map.occupied(row, col)));
-      window.cells.push_back(EvidenceScale::cellOf(std::clamp(log_odds, params_.min_log_odds, params_.max_log_odds)));
+      window.cells.push_back(
+          EvidenceScale::cellOf(std::clamp(log_odds, params_.min_log_odds, params_.max_log_odds)));
     }
   writeWindow(window);
 }
 
 GridGeometry OccupancyGrid::tileGeometry(TileIndex index) const {
   const Cell first = firstCellOf(index);
-  return {params_.resolution_m, first.col * params_.resolution_m, first.row * params_.resolution_m, kTileCells,
-          kTileCells};
+  return {params_.resolution_m, first.col * params_.resolution_m, first.row * params_.resolution_m,
+          kTileCells, kTileCells};
 }
 
 OccupancyGrid::Tile& OccupancyGrid::tileFor(TileIndex index) {
@@ -169,12 +172,13 @@ CellWindow OccupancyGrid::readWindow(const Eigen::Vector2d& low_m, const Eigen::
   const GridGeometry whole{params_.resolution_m, 0, 0, 0, 0};
   const Cell first = whole.cellAt(low_m), last = whole.cellAt(high_m);
   const double resolution_m = params_.resolution_m;
-  CellWindow window{{resolution_m, first.col * resolution_m, first.row * resolution_m, last.col - first.col + 1,
-                     last.row - first.row + 1},
+  CellWindow window{{resolution_m, first.col * resolution_m, first.row * resolution_m,
+                     last.col - first.col + 1, last.row - first.row + 1},
                     first,
                     {}};
-  window.cells.assign(static_cast<std::size_t>(window.geometry.cols) * static_cast<std::size_t>(window.geometry.rows),
-                      EvidenceCell{0});
+  window.cells.assign(
+      static_cast<std::size_t>(window.geometry.cols) * static_cast<std::size_t>(window.geometry.rows),
+      EvidenceCell{0});
   forEachRowPart(window, [&](TileIndex index, Cell inside, Cell at, int count) {
     const auto found = tiles_.find(index);
     if (found != tiles_.end())
@@ -204,8 +208,8 @@ void OccupancyGrid::addHit(const SurfaceHit& hit) {
   Tile& tile = found->second;
   if (tile.surface.empty()) tile.surface.resize(kTileCells * kTileCells);
   const Cell first = firstCellOf(index);
-  SurfacePoint& point =
-      tile.surface[static_cast<std::size_t>((hit.cell.row - first.row) * kTileCells + hit.cell.col - first.col)];
+  SurfacePoint& point = tile.surface[static_cast<std::size_t>((hit.cell.row - first.row) * kTileCells +
+                                                              hit.cell.col - first.col)];
   // What is being cleared is forgotten, so that a thing put there later has its own place.
   if (EvidenceScale::logOddsOf(tile.cells.getRow(hit.cell.row - first.row)[hit.cell.col - first.col]) < 0)
     point.weight = 0;
@@ -225,7 +229,8 @@ std::vector<SurfacePoint> OccupancyGrid::readSurface(const CellWindow& window) c
     const std::size_t start = window.indexOf(at);
     for (int i = 0; i < count; ++i) {
       const std::size_t to = start + static_cast<std::size_t>(i);
-      if (points[i].weight > 0 && scale_.occupied(window.cells[to]) >= kSurfaceOccupied) surface[to] = points[i];
+      if (points[i].weight > 0 && scale_.occupied(window.cells[to]) >= kSurfaceOccupied)
+        surface[to] = points[i];
     }
   });
   return surface;

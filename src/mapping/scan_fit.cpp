@@ -30,8 +30,8 @@ std::vector<BeamEnd> endsOf(const RangeScan& scan, double max_range_m) {
   return ends;
 }
 
-SurfaceLines surfacesAround(const std::vector<BeamEnd>& ends, const OccupancyGrid& grid, const Pose2& map_from_base,
-                            const ScanFitParams& params) {
+SurfaceLines surfacesAround(const std::vector<BeamEnd>& ends, const OccupancyGrid& grid,
+                            const Pose2& map_from_base, const ScanFitParams& params) {
   Eigen::Vector2d low_m = map_from_base.translation(), high_m = low_m;
   for (const BeamEnd& end : ends) {
     const Eigen::Vector2d end_m = map_from_base * end.in_base_m;
@@ -42,14 +42,15 @@ SurfaceLines surfacesAround(const std::vector<BeamEnd>& ends, const OccupancyGri
   return {grid, low_m.array() - margin_m, high_m.array() + margin_m, params.line_radius_m};
 }
 
-std::vector<LineMatch> pairEnds(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces, const Pose2& pose,
-                                const ScanFitParams& params) {
+std::vector<LineMatch> pairEnds(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces,
+                                const Pose2& pose, const ScanFitParams& params) {
   std::vector<LineMatch> matches;
   for (const BeamEnd& end : ends) {
     const auto line = surfaces.nearest(pose * end.in_base_m, params.gate_m);
     if (!line) continue;
     const double across_m = end.sigma_m * line->normal.dot(pose.rotation() * end.direction_in_base);
-    matches.push_back({end.in_base_m, line->point_m, line->normal, std::hypot(across_m, params.surface_sigma_m)});
+    matches.push_back(
+        {end.in_base_m, line->point_m, line->normal, std::hypot(across_m, params.surface_sigma_m)});
   }
   return matches;
 }
@@ -71,7 +72,9 @@ Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const Pos
   for (const LineMatch& match : matches)
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<PointToLineCost, 1, 3>(new PointToLineCost(match)),
-        new ceres::ScaledLoss(new ceres::CauchyLoss(params.loss_sigmas), 1 / correlated, ceres::TAKE_OWNERSHIP), pose);
+        new ceres::ScaledLoss(new ceres::CauchyLoss(params.loss_sigmas), 1 / correlated,
+                              ceres::TAKE_OWNERSHIP),
+        pose);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   options.max_num_iterations = 4;
@@ -81,8 +84,8 @@ Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const Pos
   return {pose[0], pose[1], wrapAngle(pose[2])};
 }
 
-Eigen::Matrix3d covarianceAt(const std::vector<LineMatch>& matches, const Pose2& pose, const PoseEstimate& prior,
-                             double correlated, double loss_sigmas) {
+Eigen::Matrix3d covarianceAt(const std::vector<LineMatch>& matches, const Pose2& pose,
+                             const PoseEstimate& prior, double correlated, double loss_sigmas) {
   Eigen::Matrix3d information = prior.covariance.inverse();
   for (const LineMatch& match : matches) {
     const Eigen::Vector2d arm_m = pose.rotation() * match.point_in_base_m;

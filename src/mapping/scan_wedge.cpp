@@ -6,8 +6,9 @@
 namespace cornerstone {
 namespace {
 
-constexpr int kMaxBeamsPerCell = 8;      // of many beams over a cell beside the sensor, these are looked at
-constexpr double kMinHitCause = 0.3;     // a surface point takes part in a look that it caused by this probability
+constexpr int kMaxBeamsPerCell = 8;  // of many beams over a cell beside the sensor, these are looked at
+constexpr double kMinHitCause =
+    0.3;  // a surface point takes part in a look that it caused by this probability
 constexpr double kSmallestProbability = 1e-9;
 
 double logit(double probability) {
@@ -75,7 +76,8 @@ void ScanWedge::apply(double new_share) {
   for (int row = 0; row < window_.geometry.rows; ++row)
     for (int col = 0; col < window_.geometry.cols; ++col) {
       const Eigen::Vector2d from_sensor_m = window_.geometry.centreOf({col, row}) - sensor_m;
-      if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_) updateCell({col, row}, from_sensor_m, new_share);
+      if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_)
+        updateCell({col, row}, from_sensor_m, new_share);
     }
 }
 
@@ -119,10 +121,8 @@ void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, doub
   evidence = updated(evidence, change, new_share);
   if (look.cause < kMinHitCause) return;
   const double sigma_m = look.beam->sigma_m();
-  const Eigen::Vector2d point_m =
-      map_from_sensor_.translation() + from_sensor_m * (look.beam->range_m() / std::max(range_m, 1e-6));
   hits_.push_back({{window_.first.col + cell.col, window_.first.row + cell.row},
-                   point_m,
+                   look.beam->end(),
                    new_share * look.cause / (sigma_m * sigma_m)});
 }
 
@@ -130,8 +130,10 @@ EvidenceCell ScanWedge::updated(EvidenceCell cell, double change, double new_sha
   const GridParams& params = grid_.params();
   const double before = EvidenceScale::logOddsOf(cell);
   const bool confirms = change * before >= 0;
-  const double step = std::clamp(change, -params.free_step, params.occupied_step) * (confirms ? new_share : 1);
-  const EvidenceCell after = EvidenceScale::cellOf(std::clamp(before + step, params.min_log_odds, params.max_log_odds));
+  const double step =
+      std::clamp(change, -params.free_step, params.occupied_step) * (confirms ? new_share : 1);
+  const EvidenceCell after =
+      EvidenceScale::cellOf(std::clamp(before + step, params.min_log_odds, params.max_log_odds));
   // 0 is kept for "never seen": evidence that cancels stays one step on the side of the last look.
   if (after == 0 && cell != 0) return static_cast<EvidenceCell>(change > 0 ? -1 : 1);
   return after;

@@ -1,5 +1,5 @@
-// What one scan says about every cell of its field of view: each cell is visited once, however many beams cross it
-// (near) or however wide a beam is (far), and takes the mean of the beams that overlap it.
+// What one scan says about every cell of its field of view: each cell is visited once, however many beams
+// cross it (near) or however wide a beam is (far), and takes the mean of the beams that overlap it.
 #pragma once
 
 #include <vector>

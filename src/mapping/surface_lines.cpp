@@ -6,9 +6,11 @@
 
 namespace cornerstone {
 
-SurfaceLines::SurfaceLines(const OccupancyGrid& grid, const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m,
-                           double line_radius_m)
-    : window_(grid.readWindow(low_m, high_m)), surface_(grid.readSurface(window_)), line_radius_m_(line_radius_m) {}
+SurfaceLines::SurfaceLines(const OccupancyGrid& grid, const Eigen::Vector2d& low_m,
+                           const Eigen::Vector2d& high_m, double line_radius_m)
+    : window_(grid.readWindow(low_m, high_m)),
+      surface_(grid.readSurface(window_)),
+      line_radius_m_(line_radius_m) {}
 
 std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m, double gate_m) const {
   const GridGeometry& at = window_.geometry;
@@ -53,7 +55,8 @@ std::optional<SurfaceLine> SurfaceLines::lineAround(Cell cell) const {
       ++count;
     }
   constexpr int kMinPoints = 4;
-  constexpr double kMaxThickness = 0.15;  // variance across over variance along: corners and clutter have no normal
+  constexpr double kMaxThickness =
+      0.15;  // variance across over variance along: corners and clutter have no normal
   if (count < kMinPoints) return std::nullopt;
   const Eigen::Vector2d mean = sum / total;
   const Eigen::Matrix2d covariance = squares / total - mean * mean.transpose();

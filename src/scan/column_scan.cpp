@@ -29,7 +29,8 @@ void collectColumn(const InverseDepthImage& image, const CameraPose& camera, int
     const Eigen::Vector3d ray =
         camera.rotation * Eigen::Vector3d(x, (v - image.centre_y_px) / image.focal_px, 1);
     const double height_m = camera.height_m + ray.z() / inverse_depth;
-    const double margin_m = params.height_sigmas * std::abs(ray.z()) * sigma / (inverse_depth * inverse_depth);
+    const double margin_m =
+        params.height_sigmas * std::abs(ray.z()) * sigma / (inverse_depth * inverse_depth);
     if (height_m - margin_m < params.z_min_m || height_m + margin_m > params.z_max_m) continue;
     const double planar = ray.head<2>().norm();
     if (planar < 1e-3 || inverse_depth * params.min_range_m > planar) continue;
@@ -120,10 +121,12 @@ RangeScan scanFromInverseDepth(const InverseDepthImage& image, const Eigen::Isom
   if (!base_from_camera.matrix().allFinite()) throw InputError("base_from_camera is not finite");
   const Eigen::Vector3d axis = base_from_camera.linear().col(2);
   if (axis.head<2>().norm() < 0.1) throw InputError("base_from_camera: the camera looks straight up or down");
-  CameraPose camera{base_from_camera.linear(), base_from_camera.translation().z(), std::atan2(axis.y(), axis.x())};
+  CameraPose camera{base_from_camera.linear(), base_from_camera.translation().z(),
+                    std::atan2(axis.y(), axis.x())};
 
   RangeScan scan;
-  scan.base_from_sensor = {base_from_camera.translation().x(), base_from_camera.translation().y(), camera.yaw_rad};
+  scan.base_from_sensor = {base_from_camera.translation().x(), base_from_camera.translation().y(),
+                           camera.yaw_rad};
   scan.correlated_beams = params.correlated_px;
   std::vector<ColumnPixel> pixels;
   for (int u = image.inverse_depth.cols - 1; u >= 0; --u) {

@@ -6,7 +6,8 @@
 namespace cornerstone {
 namespace {
 
-// First index from which `count` pixels lie within a window of agreement, nearest first; size() when there is none.
+// First index from which `count` pixels lie within a window of agreement, nearest first; size() when there is
+// none.
 std::size_t firstAgreeing(const std::vector<ColumnPixel>& pixels, int count, double agree_sigmas) {
   const auto needed = static_cast<std::size_t>(count);
   for (std::size_t i = 0; i + needed <= pixels.size(); ++i) {

@@ -9,8 +9,8 @@
 namespace cornerstone {
 
 struct ColumnPixel {
-  double q = 0;        // inverse planar range, 1/m
-  double sigma_q = 0;  // 1/m
+  double q = 0;               // inverse planar range, 1/m
+  double sigma_q = 0;         // 1/m
   Eigen::Vector2d direction;  // |r_xy| and its heading in the base frame
 };
 

@@ -18,9 +18,7 @@ void answer(double range_m, const LaserParams& params, Beam& beam) {
 
 }  // namespace
 
-void describe(ParamVisitor& visitor, LaserParams& params) {
-  visitor.field("sigma_m", params.sigma_m);
-}
+void describe(ParamVisitor& visitor, LaserParams& params) { visitor.field("sigma_m", params.sigma_m); }
 
 RangeScan scanFromRanges(const LaserRanges& laser, const LaserParams& params) {
   requirePositive(params.sigma_m, "sigma_m");

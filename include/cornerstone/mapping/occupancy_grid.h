@@ -1,9 +1,9 @@
-// The occupancy grid of one local frame. It is kept in tiles, each an MRPT grid, so that it grows without copying and
-// the cost of a scan does not depend on the size of the map.
+// The occupancy grid of one local frame. It is kept in tiles, each an MRPT grid, so that it grows without
+// copying and the cost of a scan does not depend on the size of the map.
 //
-// A look is inserted by Bayes' rule over the whole beam (beam_evidence.h): the surface that was measured is one of the
-// cells in the beam's interval; the map so far says which. A wall that was seen sharply from near takes the evidence of
-// later far looks to itself, so these neither smear nor erase it.
+// A look is inserted by Bayes' rule over the whole beam (beam_evidence.h): the surface that was measured is
+// one of the cells in the beam's interval; the map so far says which. A wall that was seen sharply from near
+// takes the evidence of later far looks to itself, so these neither smear nor erase it.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,16 @@
 namespace cornerstone {
 
 struct GridParams {
-  double resolution_m = 0.05;    // edge of a cell
-  double max_range_m = 8;        // beams say nothing farther away: stereo's interval is metres wide there
-  double prior_occupied = 0.03;  // share of the cells along a line of sight that hold a surface (one in about 30)
-  double outlier_ratio = 0.05;   // share of beams that are mismatches and say nothing
-  double free_step = 1.0;        // largest log-odds one look takes from a cell: a box that goes is free after 10 looks
-  double occupied_step = 3.0;    // largest log-odds one look adds to a cell: a new obstacle is there after 2 looks
-  double min_log_odds = -4;      // evidence is held within these, so that the map stays able to change
+  double resolution_m = 0.05;  // edge of a cell
+  double max_range_m = 8;      // beams say nothing farther away: stereo's interval is metres wide there
+  double prior_occupied =
+      0.03;  // share of the cells along a line of sight that hold a surface (one in about 30)
+  double outlier_ratio = 0.05;  // share of beams that are mismatches and say nothing
+  double free_step =
+      1.0;  // largest log-odds one look takes from a cell: a box that goes is free after 10 looks
+  double occupied_step =
+      3.0;  // largest log-odds one look adds to a cell: a new obstacle is there after 2 looks
+  double min_log_odds = -3;  // evidence is held within these, so that the map stays able to change
   double max_log_odds = 7;
 };
 void describe(ParamVisitor& visitor, GridParams& params);
@@ -44,12 +47,12 @@ struct CellWindow {
   }
 };
 
-// Where within (or beside) its cell a surface lies: the weighted mean of the looks it caused. This is what lets scans
-// be fitted to millimetres on a grid of 5 cm.
+// Where within (or beside) its cell a surface lies: the weighted mean of the looks it caused. This is what
+// lets scans be fitted to millimetres on a grid of 5 cm.
 struct SurfacePoint {
-  float x_m = 0;       // in the map frame
+  float x_m = 0;  // in the map frame
   float y_m = 0;
-  float weight = 0;    // 1 / variance in 1/m^2; 0: none
+  float weight = 0;  // 1 / variance in 1/m^2; 0: none
 };
 struct SurfaceHit {
   Cell cell;  // of the grid
@@ -60,8 +63,8 @@ struct SurfaceHit {
 class OccupancyGrid {
  public:
   explicit OccupancyGrid(const GridParams& params);  // throws InputError naming a parameter out of range
-  // new_share in (0, 1]: how much of what the look confirms is new; looks repeated from one place repeat their errors
-  // and count little. What contradicts the map always counts in full.
+  // new_share in (0, 1]: how much of what the look confirms is new; looks repeated from one place repeat
+  // their errors and count little. What contradicts the map always counts in full.
   void insert(const RangeScan& scan, const Pose2& map_from_base, double new_share = 1);
   void load(const GridMap& map);  // replaces all; throws InputError when the resolution or alignment differs
   void clear();

@@ -1,5 +1,6 @@
 // Ceres cost of a pose: distance of a beam's end to the line of the map's surface beside it, over its sigma.
-//   r = n . (R(yaw) p + t - m) / sigma      p: end of the beam in the base frame, m and n: point and normal in the map
+//   r = n . (R(yaw) p + t - m) / sigma      p: end of the beam in the base frame, m and n: point and normal
+//   in the map
 #pragma once
 
 #include <ceres/jet.h>
@@ -25,8 +26,10 @@ class PointToLineCost {
     using std::cos;
     using std::sin;
     const T c = cos(pose[2]), s = sin(pose[2]);
-    const T x = c * match_.point_in_base_m.x() - s * match_.point_in_base_m.y() + pose[0] - match_.surface_m.x();
-    const T y = s * match_.point_in_base_m.x() + c * match_.point_in_base_m.y() + pose[1] - match_.surface_m.y();
+    const T x =
+        c * match_.point_in_base_m.x() - s * match_.point_in_base_m.y() + pose[0] - match_.surface_m.x();
+    const T y =
+        s * match_.point_in_base_m.x() + c * match_.point_in_base_m.y() + pose[1] - match_.surface_m.y();
     residual[0] = (match_.normal.x() * x + match_.normal.y() * y) / match_.sigma_m;
     return true;
   }
@@ -35,8 +38,8 @@ class PointToLineCost {
   LineMatch match_;
 };
 
-// Ceres cost that holds a pose to where odometry expects it: r = W (pose - expected), yaw difference not wrapped, so
-// the caller keeps both within one turn.
+// Ceres cost that holds a pose to where odometry expects it: r = W (pose - expected), yaw difference not
+// wrapped, so the caller keeps both within one turn.
 class PosePriorCost {
  public:
   PosePriorCost(const Eigen::Vector3d& expected, const Eigen::Matrix3d& sqrt_information)

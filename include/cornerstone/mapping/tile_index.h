@@ -1,5 +1,5 @@
-// Which square piece of a map: tiles of kTileCells cells an edge, counted from the map frame's origin, so that a tile
-// keeps its index however the map grows.
+// Which square piece of a map: tiles of kTileCells cells an edge, counted from the map frame's origin, so
+// that a tile keeps its index however the map grows.
 #pragma once
 
 #include "cornerstone/base/grid_geometry.h"

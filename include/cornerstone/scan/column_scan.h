@@ -1,11 +1,11 @@
-// From a disparity image to one range per image column (paper, section 2.1 and Fig. 2): the nearest surface within a
-// height band that enough pixels of the column agree on, averaged over those pixels.
+// From a disparity image to one range per image column (paper, section 2.1 and Fig. 2): the nearest surface
+// within a height band that enough pixels of the column agree on, averaged over those pixels.
 //
-// A pixel (u, v) with inverse depth 1/Z looks along r = R ((u - cx) / f, (v - cy) / f, 1) in the base frame; its
-// inverse planar range is q = (1/Z) / |r_xy|, in which stereo noise is even: sigma_q = sigma_d / (f B |r_xy|). A
-// vertical wall has one q for the whole column whatever the camera's pitch.
-// Fails silently (empty beam) where nothing is matched; a column whose only matches lie behind a bare near object is
-// answered wrongly: stereo cannot know.
+// A pixel (u, v) with inverse depth 1/Z looks along r = R ((u - cx) / f, (v - cy) / f, 1) in the base frame;
+// its inverse planar range is q = (1/Z) / |r_xy|, in which stereo noise is even: sigma_q = sigma_d / (f B
+// |r_xy|). A vertical wall has one q for the whole column whatever the camera's pitch. Fails silently (empty
+// beam) where nothing is matched; a column whose only matches lie behind a bare near object is answered
+// wrongly: stereo cannot know.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,21 +21,24 @@ struct ScanParams {
   double z_max_m = 1.50;  // higher points do not hinder the robot
   // Pixels of a column that must agree before they are an obstacle; a mismatch rarely fills more of a column.
   int min_support_px = 6;
-  // Fewer pixels than an obstacle needs but at least these end the free space before them: caution, no obstacle.
+  // Fewer pixels than an obstacle needs but at least these end the free space before them: caution, no
+  // obstacle.
   int min_caution_px = 3;
   double agree_sigmas = 2.5;  // pixels this near to each other, in their own sigmas, show one surface
-  double height_sigmas = 2;   // a point counts as inside the band when it is so by this many sigmas
-  // Pixels that share one matching error, an edge of the matcher's window: averaging n pixels counts as n / this.
+  double height_sigmas = 3;   // a point counts as inside the band when it is so by this many sigmas
+  // Pixels that share one matching error, an edge of the matcher's window: averaging n pixels counts as n /
+  // this.
   double correlated_px = 9;
   // Error of all disparities of a frame together (calibration, pixel locking), which no averaging removes.
   double common_sigma_px = 0.05;
-  double min_range_m = 0.2;   // nearer answers are the robot's own body or mismatches
+  double min_range_m = 0.2;  // nearer answers are the robot's own body or mismatches
 };
 void describe(ParamVisitor& visitor, ScanParams& params);
 void requireValid(const ScanParams& params);  // throws InputError naming the parameter
 
-// base_from_camera: pose of the reference camera's optical frame (z forward, x right, y down) in the base frame
-// (x forward, z up, origin on the floor). The scan's sensor frame lies at the camera, heading along its optical axis.
+// base_from_camera: pose of the reference camera's optical frame (z forward, x right, y down) in the base
+// frame (x forward, z up, origin on the floor). The scan's sensor frame lies at the camera, heading along its
+// optical axis.
 RangeScan scanFromDisparity(const Disparity& disparity, const Eigen::Isometry3d& base_from_camera,
                             const ScanParams& params);
 

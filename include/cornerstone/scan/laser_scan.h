@@ -1,5 +1,5 @@
-// From the ranges of a planar laser to a range scan. Ranges that are not valid say nothing: a laser gives no answer
-// for glass, black walls and the open alike.
+// From the ranges of a planar laser to a range scan. Ranges that are not valid say nothing: a laser gives no
+// answer for glass, black walls and the open alike.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace cornerstone {
 
 struct LaserParams {
-  double sigma_m = 0.02;      // of one range: usual for indoor lasers
+  double sigma_m = 0.02;  // of one range: usual for indoor lasers
 };
 void describe(ParamVisitor& visitor, LaserParams& params);
 
