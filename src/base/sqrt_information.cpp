@@ -7,8 +7,8 @@
 namespace cornerstone {
 
 Eigen::Matrix3d sqrtInformation(const Eigen::Matrix3d& covariance) {
-  const bool symmetric = (covariance - covariance.transpose()).cwiseAbs().maxCoeff() <=
-                         1e-9 * covariance.cwiseAbs().maxCoeff();
+  const bool symmetric =
+      (covariance - covariance.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * covariance.cwiseAbs().maxCoeff();
   const Eigen::LLT<Eigen::Matrix3d> covariance_llt(covariance);
   if (!covariance.allFinite() || !symmetric || covariance_llt.info() != Eigen::Success)
     throw std::invalid_argument("sqrtInformation: the covariance is not symmetric positive definite");

@@ -24,8 +24,8 @@ double numberOf(const std::string& text, const std::string& what) {
 
 }  // namespace
 
-Arguments::Arguments(int argc, const char* const* argv, const std::string& usage, std::size_t positional_count,
-                     const std::vector<std::string>& option_names) {
+Arguments::Arguments(int argc, const char* const* argv, const std::string& usage,
+                     std::size_t positional_count, const std::vector<std::string>& option_names) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word.rfind("--", 0) != 0) {
@@ -62,7 +62,8 @@ std::vector<double> numbersOf(const std::string& text, std::size_t count, const 
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, ',');) numbers.push_back(numberOf(part, what));
   if (numbers.size() != count)
-    throw InputError(what + ": expected " + std::to_string(count) + " numbers separated by commas, got '" + text + "'");
+    throw InputError(what + ": expected " + std::to_string(count) + " numbers separated by commas, got '" +
+                     text + "'");
   return numbers;
 }
 

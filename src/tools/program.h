@@ -1,5 +1,5 @@
-// What every command-line program shares: the last line of its output is one JSON object; exit 0 done, 2 bad arguments
-// or input, 3 no answer.
+// What every command-line program shares: the last line of its output is one JSON object; exit 0 done, 2 bad
+// arguments or input, 3 no answer.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,8 @@ constexpr int kExitDone = 0;
 constexpr int kExitBadInput = 2;
 constexpr int kExitNoAnswer = 3;
 
-// Command-line arguments: positional ones in order, and --name VALUE. InputError on anything unknown or missing.
+// Command-line arguments: positional ones in order, and --name VALUE. InputError on anything unknown or
+// missing.
 class Arguments {
  public:
   Arguments(int argc, const char* const* argv, const std::string& usage, std::size_t positional_count,
@@ -32,7 +33,8 @@ class Arguments {
 // "1,2.5,-90" -> {1, 2.5, -90}; InputError naming `what` otherwise.
 std::vector<double> numbersOf(const std::string& text, std::size_t count, const std::string& what);
 
-// Runs the program's body: prints an InputError to stderr and returns 2; prints what the body returns otherwise.
+// Runs the program's body: prints an InputError to stderr and returns 2; prints what the body returns
+// otherwise.
 struct Outcome {
   int exit_code = kExitDone;
   nlohmann::json result;

@@ -63,9 +63,11 @@ TEST(Params, RefusalsNameFileAndKey) {
   EXPECT_EQ(refusalOf("{count: 5, length_m: 2.5, fast: false, name: z, robots: [q]}"),
             "some.yaml: parameter 'inner' is missing");
   EXPECT_EQ(refusalOf("{count: x, length_m: 2.5}"), "some.yaml: parameter 'count' is not a whole number");
-  EXPECT_EQ(refusalOf("{count: 5, length_m: .nan}"), "some.yaml: parameter 'length_m' is not a finite number");
-  EXPECT_EQ(refusalOf("{count: 5, length_m: 1, fast: no, name: z, robots: [q], inner: {tilt_deg: 1, til: 2}}"),
-            "some.yaml/inner: unknown parameter 'til'");
+  EXPECT_EQ(refusalOf("{count: 5, length_m: .nan}"),
+            "some.yaml: parameter 'length_m' is not a finite number");
+  EXPECT_EQ(
+      refusalOf("{count: 5, length_m: 1, fast: no, name: z, robots: [q], inner: {tilt_deg: 1, til: 2}}"),
+      "some.yaml/inner: unknown parameter 'til'");
   EXPECT_EQ(refusalOf("{count: 5, length_m: 1, fast: no, name: z, robots: [q], inner: {tilt_deg: 1}, x: 1}"),
             "some.yaml: unknown parameter 'x'");
   EXPECT_EQ(refusalOf("[1]"), "some.yaml: expected a map of parameters");

@@ -1,6 +1,6 @@
-// The one exception for bad input: files, configuration, calibration, arguments. Its text names the file, field or
-// topic. Programs turn it into exit code 2, nodelets into a refused start. A programmer's fault throws
-// std::logic_error; "no answer" is an empty optional, never an exception.
+// The one exception for bad input: files, configuration, calibration, arguments. Its text names the file,
+// field or topic. Programs turn it into exit code 2, nodelets into a refused start. A programmer's fault
+// throws std::logic_error; "no answer" is an empty optional, never an exception.
 #pragma once
 
 #include <stdexcept>

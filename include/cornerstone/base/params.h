@@ -1,6 +1,7 @@
-// Parameters: one struct a stage, and beside it one function `void describe(ParamVisitor&, TheParams&)` that names
-// every member once. Reading YAML, writing YAML and the test that holds shipped YAML against the structs all use it.
-// Unknown, missing and mistyped keys are an InputError that names the key: a start never goes on with a guess.
+// Parameters: one struct a stage, and beside it one function `void describe(ParamVisitor&, TheParams&)` that
+// names every member once. Reading YAML, writing YAML and the test that holds shipped YAML against the
+// structs all use it. Unknown, missing and mistyped keys are an InputError that names the key: a start never
+// goes on with a guess.
 #pragma once
 
 #include <yaml-cpp/yaml.h>

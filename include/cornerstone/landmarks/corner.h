@@ -12,7 +12,7 @@ enum class CornerKind {
   kInsideSolid,  // a pillar or wall end: the quadrant between the arms is solid
 };
 
-struct Corner {
+struct CornerLandmark {
   // map_from_corner: apex at (x, y); one arm runs along +x of the corner's frame, the other along +y.
   Pose2 pose;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // (x, y, yaw), m and rad

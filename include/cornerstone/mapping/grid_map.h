@@ -12,7 +12,11 @@ constexpr float kUnseen = 0.5f;
 
 struct GridMap {
   GridGeometry geometry;
-  cv::Mat1f occupied;  // probability in [0, 1], rows x cols, row 0 at the smallest y; kUnseen exactly: never seen
+  cv::Mat1f
+      occupied;  // probability in [0, 1], rows x cols, row 0 at the smallest y; kUnseen exactly: never seen
 };
+
+// Mean position of the cells that were seen, in the map's frame; its origin when there are none.
+Eigen::Vector2d knownCentre(const GridMap& map);
 
 }  // namespace cornerstone

@@ -1,33 +1,68 @@
-// Scans and odometry in, a map and the drift of the odometry out: each scan is fitted to the map before it is inserted.
+// Scans and odometry in, a map and the drift of the odometry out: each scan is fitted to the map before it is
+// inserted.
+//
+// The pose is carried by odometry from scan to scan with its covariance (odometry_filter.h), corrected by
+// each fit (scan_fit.h); where a scan fits nothing, odometry alone moves it on. Scans that contradict the map
+// in most of their beams are not inserted unless they go on doing so: then it is the world that changed.
 #pragma once
 
+#include <optional>
+
 #include "cornerstone/mapping/occupancy_grid.h"
+#include "cornerstone/mapping/odometry_filter.h"
+#include "cornerstone/mapping/scan_fit.h"
 
 namespace cornerstone {
 
 struct MapperParams {
   GridParams grid;
-  // (the owner of this area adds the rest, each with unit and reason)
+  ScanFitParams fit;
+  OdometryNoise odometry;
+  bool fit_scans = true;        // false: odometry as it is (for robots that localise by other means)
+  double new_look_m = 0.2;      // a look from this far away repeats none of the last one's errors,
+  double new_look_rad = 0.09;   // nor one from 5 degrees aside; nearer looks count by their share of it
+  double min_new_share = 0.1;   // of a look from the same place
+  int max_contradictions = 10;  // scans in a row that fit ill before they are taken for a changed world
 };
 void describe(ParamVisitor& visitor, MapperParams& params);
 
 struct MapperUpdate {
   Pose2 map_from_odom;
-  bool inserted = false;  // false: the scan said nothing or did not fit
+  bool inserted = false;                                 // false: the scan said nothing or did not fit
+  bool fitted = false;                                   // the scan corrected the pose
+  int matches = 0;                                       // beam ends that found a surface of the map
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of map_from_base: x, y, yaw
 };
 
 class Mapper {
  public:
-  explicit Mapper(const MapperParams& params);
+  explicit Mapper(const MapperParams& params);  // throws InputError naming a parameter out of range
   // odom_from_base: at the scan's instant; not finite: InputError and nothing changes.
   MapperUpdate update(const RangeScan& scan, const Pose2& odom_from_base);
+  // Empties the map and starts it at the robot's pose in odom; a new epoch.
+  void reset();
+  // Goes on in a saved map (a new epoch) in which the robot's next scan is taken at map_from_base.
+  void load(const GridMap& map, const Pose2& map_from_base);
+
   const OccupancyGrid& grid() const { return grid_; }
   const Pose2& mapFromOdom() const { return map_from_odom_; }
+  PoseEstimate pose() const { return filter_.pose(); }
+  const OdometryFilter& odometry() const { return filter_; }
+  std::uint32_t epoch() const { return epoch_; }
 
  private:
+  void predict(const Pose2& odom_from_base);
+  double newShare() const;
+
   MapperParams params_;
   OccupancyGrid grid_;
   Pose2 map_from_odom_;
+  OdometryFilter filter_;
+  std::optional<Pose2> last_odom_;      // odom_from_base of the last scan
+  std::optional<Pose2> start_;          // where a loaded map says the robot is
+  std::optional<Pose2> last_inserted_;  // map_from_base
+  int contradictions_ = 0;
+  std::uint32_t epoch_ = 1;
 };
 
 }  // namespace cornerstone

@@ -1,33 +1,103 @@
-// The occupancy grid of one local frame, on MRPT's log-odds grid; it grows as scans arrive.
+// The occupancy grid of one local frame. It is kept in tiles, each an MRPT grid, so that it grows without
+// copying and the cost of a scan does not depend on the size of the map.
+//
+// A look is inserted by Bayes' rule over the whole beam (beam_evidence.h): the surface that was measured is
+// one of the cells in the beam's interval; the map so far says which. A wall that was seen sharply from near
+// takes the evidence of later far looks to itself, so these neither smear nor erase it.
 #pragma once
 
-#include <mrpt/maps/COccupancyGridMap2D.h>
-
-#include <opencv2/core.hpp>
+#include <cstdint>
+#include <map>
+#include <vector>
 
 #include "cornerstone/base/params.h"
 #include "cornerstone/base/pose2.h"
+#include "cornerstone/mapping/evidence.h"
 #include "cornerstone/mapping/grid_map.h"
+#include "cornerstone/mapping/tile_index.h"
 #include "cornerstone/scan/range_scan.h"
 
 namespace cornerstone {
 
 struct GridParams {
-  double resolution_m = 0.05;
-  // (the owner of this area adds the rest, each with unit and reason)
+  double resolution_m = 0.05;  // edge of a cell
+  double max_range_m = 8;      // beams say nothing farther away: stereo's interval is metres wide there
+  double prior_occupied =
+      0.03;  // share of the cells along a line of sight that hold a surface (one in about 30)
+  double outlier_ratio = 0.05;  // share of beams that are mismatches and say nothing
+  double free_step =
+      1.0;  // largest log-odds one look takes from a cell: a box that goes is free after 10 looks
+  double occupied_step =
+      3.0;  // largest log-odds one look adds to a cell: a new obstacle is there after 2 looks
+  double min_log_odds = -3;  // evidence is held within these, so that the map stays able to change
+  double max_log_odds = 7;
 };
 void describe(ParamVisitor& visitor, GridParams& params);
 
+// A rectangle of cells read from the grid, for work that touches many of them.
+struct CellWindow {
+  GridGeometry geometry;  // cell (0, 0) of the window is `first` of the grid
+  Cell first;
+  std::vector<EvidenceCell> cells;  // row by row
+  EvidenceCell& at(Cell cell) { return cells[indexOf(cell)]; }
+  EvidenceCell at(Cell cell) const { return cells[indexOf(cell)]; }
+  std::size_t indexOf(Cell cell) const {
+    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(geometry.cols) +
+           static_cast<std::size_t>(cell.col);
+  }
+};
+
+// Where within (or beside) its cell a surface lies: the weighted mean of the looks it caused. This is what
+// lets scans be fitted to millimetres on a grid of 5 cm.
+struct SurfacePoint {
+  float x_m = 0;  // in the map frame
+  float y_m = 0;
+  float weight = 0;  // 1 / variance in 1/m^2; 0: none
+};
+struct SurfaceHit {
+  Cell cell;  // of the grid
+  Eigen::Vector2d point_m;
+  double weight = 0;
+};
+
 class OccupancyGrid {
  public:
-  explicit OccupancyGrid(const GridParams& params);
-  void insert(const RangeScan& scan, const Pose2& map_from_base);
-  GridMap snapshot() const;
-  void load(const GridMap& map);  // throws InputError when the resolution differs
+  explicit OccupancyGrid(const GridParams& params);  // throws InputError naming a parameter out of range
+  // new_share in (0, 1]: how much of what the look confirms is new; looks repeated from one place repeat
+  // their errors and count little. What contradicts the map always counts in full.
+  void insert(const RangeScan& scan, const Pose2& map_from_base, double new_share = 1);
+  void load(const GridMap& map);  // replaces all; throws InputError when the resolution or alignment differs
+  void clear();
+
+  bool empty() const { return tiles_.empty(); }
+  std::uint64_t version() const { return version_; }  // rises with every change
+  GridGeometry geometry() const;                      // all tiles; 0 x 0 cells when empty
+  GridMap snapshot() const;                           // of geometry()
+  // Tiles changed after `version` (0: all), in a fixed order.
+  std::vector<TileIndex> changedTiles(std::uint64_t version) const;
+  GridMap tile(TileIndex index) const;  // kTileCells x kTileCells; kUnseen where there is nothing
+
+  const GridParams& params() const { return params_; }
+  const EvidenceScale& scale() const { return scale_; }
+  CellWindow readWindow(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m) const;
+  // Surface points of a window's occupied cells, row by row; weight 0 elsewhere.
+  std::vector<SurfacePoint> readSurface(const CellWindow& window) const;
 
  private:
+  struct Tile {
+    mrpt::maps::COccupancyGridMap2D cells;
+    std::vector<SurfacePoint> surface;  // empty until the first hit
+    std::uint64_t version = 0;
+  };
+  Tile& tileFor(TileIndex index);
+  void writeWindow(const CellWindow& window);
+  void addHit(const SurfaceHit& hit);
+  GridGeometry tileGeometry(TileIndex index) const;
+
   GridParams params_;
-  mrpt::maps::COccupancyGridMap2D grid_;
+  EvidenceScale scale_;
+  std::map<TileIndex, Tile> tiles_;
+  std::uint64_t version_ = 0;
 };
 
 }  // namespace cornerstone

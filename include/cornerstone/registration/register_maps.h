@@ -3,20 +3,15 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "cornerstone/base/params.h"
 #include "cornerstone/landmarks/detect_corners.h"
 #include "cornerstone/mapping/grid_map.h"
+#include "cornerstone/registration/registration_params.h"
 
 namespace cornerstone {
-
-struct RegistrationParams {
-  double match_distance_m = 1.0;  // paper: corners farther apart than 1000 mm are not paired
-  // (the owner of this area adds the rest, each with unit and reason)
-};
-void describe(ParamVisitor& visitor, RegistrationParams& params);
 
 struct MapView {  // what is known of one robot's map; both must outlive the call
   const GridMap& map;
@@ -24,10 +19,11 @@ struct MapView {  // what is known of one robot's map; both must outlive the cal
 };
 
 struct Registration {
-  Pose2 reference_from_current;                          // pose of the current map's frame in the reference map's
+  Pose2 reference_from_current;  // pose of the current map's frame in the reference map's
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // (x, y, yaw), m and rad
   std::vector<std::pair<int, int>> matches;              // indices (reference corner, current corner)
   double rms_m = 0;                                      // of the matched edges after refinement
+  double agreement = 0;    // share of the edges that both maps can judge which agree
   double overlap = 0;      // share of the current map's known cells that the reference map knows
   double second_best = 0;  // score of the best different pose over this one's: near 1 is ambiguous
 };

@@ -1,5 +1,5 @@
-// One look of a range sensor in the plane: a beam per image column (or laser ray), in the sensor's planar frame.
-// A beam without an answer says nothing at all: it is never "free to the end".
+// One look of a range sensor in the plane: a beam per image column (or laser ray), in the sensor's planar
+// frame. A beam without an answer says nothing at all: it is never "free to the end".
 #pragma once
 
 #include <vector>
@@ -13,15 +13,16 @@ struct Beam {
   double width_rad = 0;    // angle between the beam's edges
   bool hit = false;        // false: no answer, the fields below are 0
   double range_m = 0;      // to the obstacle, along the bearing
-  double near_m = 0;       // interval of uncertainty around range_m: design of the paper's Fig. 2e
+  double near_m = 0;       // interval of uncertainty around range_m, 2 sigma each side: the paper's Fig. 2e
   double far_m = 0;
-  double sigma_m = 0;      // standard deviation of range_m
-  double clear_m = 0;      // free up to here, <= near_m
+  double sigma_m = 0;  // standard deviation of range_m
+  double clear_m = 0;  // free up to here, <= near_m
 };
 
 struct RangeScan {
   Pose2 base_from_sensor;
-  std::vector<Beam> beams;
+  std::vector<Beam> beams;      // rising bearing
+  double correlated_beams = 1;  // neighbours that share one error (stereo: the correlation window's width)
 };
 
 }  // namespace cornerstone

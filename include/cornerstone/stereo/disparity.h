@@ -1,4 +1,5 @@
-// What stereo knows of one view: a disparity for each reference pixel it is sure of, and why not for the others.
+// What stereo knows of one view: a disparity for each reference pixel it is sure of, and why not for the
+// others.
 #pragma once
 
 #include <cstdint>

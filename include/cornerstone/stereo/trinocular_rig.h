@@ -1,7 +1,8 @@
 // The geometry of a rectified rig: a reference camera, one beside it (right) and, if there is one, a third.
 //
-// All disparities are those of the reference pair: d = f B / Z in px, Z along the reference camera's optical axis.
-// A reference pixel (x, y) with disparity d is seen by a secondary camera at (x + d * shift.x, y + d * shift.y):
+// All disparities are those of the reference pair: d = f B / Z in px, Z along the reference camera's optical
+// axis. A reference pixel (x, y) with disparity d is seen by a secondary camera at (x + d * shift.x, y + d *
+// shift.y):
 // (-1, 0) for the right camera, (0, +1) for a top camera with the same baseline.
 #pragma once
 
@@ -24,8 +25,8 @@ struct TrinocularRig {
   double rangeOf(double disparity_px) const { return focal_px * baseline_m / disparity_px; }
 };
 
-// Throws InputError that names the camera and the field: not calibrated (zeros), NaN, unequal sizes or focal lengths,
-// a baseline that is zero, has the wrong sign or lies along neither image axis.
+// Throws InputError that names the camera and the field: not calibrated (zeros), NaN, unequal sizes or focal
+// lengths, a baseline that is zero, has the wrong sign or lies along neither image axis.
 TrinocularRig makeRig(const CameraCalibration& reference, const CameraCalibration& right,
                       const std::optional<CameraCalibration>& top);
 

@@ -1,0 +1,35 @@
+// Fits the corner model to a map's edges (paper, section 3.3) with Ceres, then moves its arms onto the faces
+// of one kind: on a thin wall the distance field alone would settle between the two faces. Poses in metres of
+// the map's frame. No answer where an arm has too little support, where the fit leaves the neighbourhood of
+// its first guess, or where the model stays too far from the edges.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cornerstone/landmarks/corner_cost.h"
+#include "cornerstone/landmarks/detect_corners.h"
+#include "cornerstone/landmarks/edge_index.h"
+
+namespace cornerstone {
+
+class CornerFitter {
+ public:
+  // Field and index must outlive the fitter.
+  CornerFitter(const DistanceField& field, const EdgeIndex& index, const GridGeometry& geometry,
+               const LandmarkParams& params);
+
+  // The corner nearest to a first guess, by the distance field.
+  Pose2 fit(const Pose2& guess);
+
+  // The corner of one kind near a pose, from the edges that face the right way.
+  std::optional<CornerLandmark> settle(const Pose2& near, CornerKind kind) const;
+
+ private:
+  GridGeometry geometry_;
+  LandmarkParams params_;
+  const EdgeIndex& index_;
+  CornerCost cost_;
+};
+
+}  // namespace cornerstone

@@ -1,0 +1,34 @@
+// How well a pose of one map in another agrees with both: the current map's edges on the reference map and
+// the other way round. An edge on an edge of the same direction agrees, an edge on surely free space
+// contradicts, unknown says nothing. Counted in edges of the thinned maps, each about one square of wall.
+#pragma once
+
+#include <vector>
+
+#include "cornerstone/base/pose2.h"
+#include "cornerstone/registration/evidence_grid.h"
+
+namespace cornerstone {
+
+struct MapEvidence {
+  EvidenceGrid coarse;
+  EvidenceGrid fine;
+  std::vector<EdgePoint> edges;     // thinned, in an order without pattern
+  std::vector<EdgeSample> samples;  // the same, for the grids
+  Eigen::Vector2d middle_m;         // mean of the edges
+};
+
+struct PoseScore {
+  double agree = 0;
+  double contradict = 0;
+  // Share of the edges that the other map can judge which agree.
+  double agreement() const { return agree > 0 ? agree / (agree + contradict) : 0; }
+};
+
+enum class ScoreLevel { kCoarse, kFine };
+
+// max_samples: of each map, at most; the counts are scaled up to all of them.
+PoseScore scorePose(const MapEvidence& reference, const MapEvidence& current,
+                    const Pose2& reference_from_current, ScoreLevel level, std::size_t max_samples);
+
+}  // namespace cornerstone

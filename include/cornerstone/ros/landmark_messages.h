@@ -1,0 +1,30 @@
+// Corners, registrations and their rviz markers. The message is called Corner, the core's landmark
+// CornerLandmark.
+#pragma once
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <vector>
+
+#include "cornerstone/CornerArray.h"
+#include "cornerstone/MapRegistration.h"
+#include "cornerstone/landmarks/detect_corners.h"
+#include "cornerstone/registration/registration_tracker.h"
+
+namespace cornerstone {
+
+Corner toMessage(const CornerLandmark& corner);
+// InputError when a field is not finite or the kind is unknown.
+CornerLandmark fromMessage(const Corner& message);
+
+// The state, pose, covariance and evidence; names, frames and epochs are the caller's to fill in.
+MapRegistration toMessage(const RegistrationTracker& tracker, double now_s);
+
+// Edges as points (namespace "edges") and each corner as its two arms (namespace "corners"), coloured by
+// kind.
+visualization_msgs::MarkerArray toMarkers(const Landmarks& landmarks, double arm_length_m,
+                                          const std_msgs::Header& header);
+// Lines between the matched corners of two maps, in the reference map's frame (namespace "matches").
+visualization_msgs::MarkerArray toMatchMarkers(const MapRegistration& registration);
+
+}  // namespace cornerstone

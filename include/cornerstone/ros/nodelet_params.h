@@ -1,0 +1,61 @@
+// Parameters of the nodelets: their own and those of the stages they call. One YAML file of config/ for each
+// struct.
+#pragma once
+
+#include <string>
+
+#include "cornerstone/landmarks/detect_corners.h"
+#include "cornerstone/mapping/mapper.h"
+#include "cornerstone/registration/registration_tracker.h"
+#include "cornerstone/ros/frame_names.h"
+#include "cornerstone/scan/column_scan.h"
+#include "cornerstone/scan/depth_scan.h"
+#include "cornerstone/scan/laser_scan.h"
+#include "cornerstone/stereo/stereo_matcher.h"
+
+namespace cornerstone {
+
+struct TrinocularStereoParams {       // config/stereo.yaml
+  std::string images = "image_rect";  // or image_raw: rectified here with each camera's calibration
+  bool third_camera = true;           // false: reference and right only
+  // Largest difference between the stamps of one set; 0: equal stamps. Cameras with a common trigger differ
+  // by less than a millisecond; at 1 m/s and 3 m range 10 ms already shift the image by a quarter of a pixel.
+  double sync_tolerance_s = 0.0;
+  int queue_size = 5;  // sets that may wait; more only delays what is shown
+  StereoParams stereo;
+};
+void describe(ParamVisitor& visitor, TrinocularStereoParams& params);
+
+struct OccupancyMapperParams {  // config/mapper.yaml
+  std::string robot = "robot";
+  FrameNames frames;
+  std::string input = "disparity";  // or depth, scan
+  // Standard deviation of every disparity, px; 0: the topic disparity_sigma tells it pixel by pixel.
+  double disparity_sigma_px = 0.0;
+  // A scan waits this long for the odometry of its instant, then it is dropped. Drivers publish at 10 Hz or
+  // faster.
+  double tf_timeout_s = 0.5;
+  double publish_period_s =
+      0.5;                    // of the map and its tiles; at most 2 Hz keeps the picture fresh at little cost
+  double tf_period_s = 0.05;  // of map -> odom
+  ScanParams scan;
+  DepthNoise depth;
+  LaserParams laser;
+  MapperParams mapper;
+};
+void describe(ParamVisitor& visitor, OccupancyMapperParams& params);
+
+struct RegistrationNodeletParams {  // config/registration.yaml
+  std::string robot = "robot";
+  std::string reference_robot;  // empty, or this robot itself: it is the reference and registers to nobody
+  FrameNames frames;
+  std::string reference_map_frame;  // empty: <reference robot>/map
+  double period_s = 1.0;            // between attempts; maps change little in less
+  double tf_period_s = 0.1;         // of the shared frame, while there is one
+  LandmarkParams landmarks;
+  RegistrationParams registration;
+  TrackerParams tracker;
+};
+void describe(ParamVisitor& visitor, RegistrationNodeletParams& params);
+
+}  // namespace cornerstone

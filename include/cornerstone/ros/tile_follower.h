@@ -1,0 +1,27 @@
+// Another robot's map, or this robot's own, followed through its map_tiles.
+#pragma once
+
+#include <optional>
+
+#include "cornerstone/MapTiles.h"
+#include "cornerstone/mapping/tile_map.h"
+
+namespace cornerstone {
+
+class TileFollower {
+ public:
+  // True: the robot's map began anew (another epoch), all older tiles are gone. InputError naming the field
+  // at fault, and nothing changes.
+  bool take(const MapTiles& message);
+  bool empty() const { return !tiles_; }
+  GridMap map() const { return tiles_ ? tiles_->assemble() : GridMap{}; }
+  std::uint32_t epoch() const { return epoch_; }
+  std::uint32_t version() const { return version_; }  // of the newest tiles
+
+ private:
+  std::optional<TileMap> tiles_;
+  std::uint32_t epoch_ = 0;
+  std::uint32_t version_ = 0;
+};
+
+}  // namespace cornerstone

@@ -1,0 +1,119 @@
+#include "cornerstone/landmarks/corner_fit.h"
+
+#include <ceres/tiny_solver.h>
+#include <ceres/tiny_solver_cost_function_adapter.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace cornerstone {
+namespace {
+
+using Adapter = ceres::TinySolverCostFunctionAdapter<Eigen::Dynamic, 3>;
+
+constexpr double kFacesArmCosine = 0.80;  // 37 degrees: an edge that may belong to an arm
+constexpr int kSettleRounds = 3;          // edges are chosen anew at each; the choice stays after two
+constexpr double kConverged = 1e-2;       // cells and degrees: a change "very small" to the paper
+
+int pointsPerArm(const LandmarkParams& params) {
+  return std::max(static_cast<int>(std::lround(params.arm_length_m / params.model_spacing_m)) + 1, 3);
+}
+
+// What the edges beside both arms say of a corner pose.
+struct ArmEvidence {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // J'J, J = d(distance to the arm) / d(pose)
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();     // J'e
+  double squares_m2 = 0;
+  int count = 0;
+  std::array<double, 2> support{};  // share of each arm's length that edges cover
+};
+
+ArmEvidence gather(const EdgeIndex& index, const Pose2& pose, double facing, const LandmarkParams& params) {
+  ArmEvidence evidence;
+  const int bins = pointsPerArm(params) - 1;
+  std::array<std::vector<bool>, 2> covered{std::vector<bool>(static_cast<std::size_t>(bins)),
+                                           std::vector<bool>(static_cast<std::size_t>(bins))};
+  const Eigen::Matrix2d rotation = pose.rotation();
+  index.forEachNear(pose.translation(), [&](int i) {
+    const EdgePoint& edge = index.edges()[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d offset = edge.position_m - pose.translation();
+    const Eigen::Vector2d p = rotation.transpose() * offset;
+    const Eigen::Vector2d n = rotation.transpose() * edge.normal;
+    for (int arm = 0; arm < 2; ++arm) {  // arm 0 along +x, its distance is p.y; arm 1 along +y
+      const double along = p[arm], away = p[1 - arm];
+      if (along < 0 || along >= params.arm_length_m || std::abs(away) > params.polish_reach_m) continue;
+      if (facing * n[1 - arm] < kFacesArmCosine) continue;
+      covered[static_cast<std::size_t>(arm)][static_cast<std::size_t>(along / params.arm_length_m * bins)] =
+          true;
+      const Eigen::Vector2d axis = rotation.col(1 - arm);
+      // The distance away = axis . (edge - apex) falls as the apex moves along the axis, and turns with the
+      // arm.
+      const Eigen::Vector3d row(-axis.x(), -axis.y(), arm == 0 ? -along : along);
+      evidence.information += row * row.transpose();
+      evidence.gradient += row * away;
+      evidence.squares_m2 += away * away;
+      ++evidence.count;
+      break;
+    }
+  });
+  for (std::size_t arm = 0; arm < 2; ++arm)
+    evidence.support[arm] =
+        static_cast<double>(std::count(covered[arm].begin(), covered[arm].end(), true)) / bins;
+  return evidence;
+}
+
+}  // namespace
+
+CornerFitter::CornerFitter(const DistanceField& field, const EdgeIndex& index, const GridGeometry& geometry,
+                           const LandmarkParams& params)
+    : geometry_(geometry),
+      params_(params),
+      index_(index),
+      cost_(field, params.arm_length_m / geometry.resolution_m, pointsPerArm(params), params.stabiliser) {}
+
+Pose2 CornerFitter::fit(const Pose2& guess) {
+  const Eigen::Vector2d cells = geometry_.toCells(guess.translation());
+  Eigen::Vector3d x(cells.x(), cells.y(), guess.yaw_rad * 180 / M_PI);
+  const Adapter adapter(cost_);
+  ceres::TinySolver<Adapter> solver;
+  solver.options.max_num_iterations = 2;  // one step: the stabiliser's x_prev is renewed after each
+  solver.options.initial_trust_region_radius = 1e8;  // the stabiliser alone holds the step
+  for (int i = 0; i < params_.max_iterations; ++i) {
+    const Eigen::Vector3d previous = x;
+    cost_.setPrevious(previous);
+    solver.Solve(adapter, &x);
+    if ((x - previous).cwiseAbs().maxCoeff() < kConverged) break;
+  }
+  const Eigen::Vector2d apex = geometry_.toMetres(x.head<2>());
+  return {apex.x(), apex.y(), wrapAngle(x[2] * M_PI / 180)};
+}
+
+std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, CornerKind kind) const {
+  const double facing = kind == CornerKind::kInsideFree ? 1 : -1;
+  Pose2 pose = near;
+  ArmEvidence evidence;
+  for (int round = 0; round <= kSettleRounds; ++round) {
+    evidence = gather(index_, pose, facing, params_);
+    if (std::min(evidence.support[0], evidence.support[1]) < params_.min_support) return std::nullopt;
+    if (round == kSettleRounds) break;
+    const Eigen::Vector3d step = evidence.information.ldlt().solve(-evidence.gradient);
+    if (!step.allFinite() || step.head<2>().norm() > params_.dilation_m + params_.polish_reach_m)
+      return std::nullopt;
+    pose = {pose.x_m + step[0], pose.y_m + step[1], wrapAngle(pose.yaw_rad + step[2])};
+  }
+  CornerLandmark corner;
+  corner.pose = pose;
+  corner.kind = kind;
+  corner.rms_m = std::sqrt(evidence.squares_m2 / evidence.count);
+  if (corner.rms_m > params_.max_rms_cells * geometry_.resolution_m) return std::nullopt;
+  // Edges within the smoothing radius share their cells: so many count as one. A cell's quantisation is the
+  // floor.
+  const double correlated = std::max(2 * params_.edges.smoothing_m / geometry_.resolution_m, 1.0);
+  const double variance_m2 =
+      corner.rms_m * corner.rms_m + geometry_.resolution_m * geometry_.resolution_m / 12;
+  corner.covariance = correlated * variance_m2 * evidence.information.inverse();
+  return corner;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,60 @@
+#include "cornerstone/landmarks/detect_corners.h"
+
+#include <algorithm>
+
+#include "cornerstone/landmarks/corner_candidates.h"
+#include "cornerstone/landmarks/corner_fit.h"
+
+namespace cornerstone {
+namespace {
+
+// A corner suppresses those with a higher rms near it (paper, section 4.1); the two kinds are different
+// landmarks.
+std::vector<CornerLandmark> suppressNear(std::vector<CornerLandmark> corners, double radius_m) {
+  std::stable_sort(corners.begin(), corners.end(),
+                   [](const CornerLandmark& a, const CornerLandmark& b) { return a.rms_m < b.rms_m; });
+  std::vector<CornerLandmark> kept;
+  for (const CornerLandmark& corner : corners) {
+    const bool suppressed = std::any_of(kept.begin(), kept.end(), [&](const CornerLandmark& better) {
+      return better.kind == corner.kind &&
+             (better.pose.translation() - corner.pose.translation()).norm() < radius_m;
+    });
+    if (!suppressed) kept.push_back(corner);
+  }
+  return kept;
+}
+
+}  // namespace
+
+void describe(ParamVisitor& visitor, LandmarkParams& params) {
+  visitor.group("edges", [&] { describe(visitor, params.edges); });
+  visitor.field("arm_length_m", params.arm_length_m);
+  visitor.field("model_spacing_m", params.model_spacing_m);
+  visitor.field("dilation_m", params.dilation_m);
+  visitor.field("candidate_spacing_m", params.candidate_spacing_m);
+  visitor.field("max_iterations", params.max_iterations);
+  visitor.field("stabiliser", params.stabiliser);
+  visitor.field("max_rms_cells", params.max_rms_cells);
+  visitor.field("suppression_m", params.suppression_m);
+  visitor.field("polish_reach_m", params.polish_reach_m);
+  visitor.field("min_support", params.min_support);
+}
+
+Landmarks detectLandmarks(const GridMap& map, const LandmarkParams& params) {
+  Landmarks landmarks;
+  landmarks.edges = findEdges(map, cellStates(map, params.edges), params.edges);
+  if (landmarks.edges.empty()) return landmarks;
+  const DistanceField field(landmarks.edges, map.geometry);
+  const EdgeIndex index(landmarks.edges, params.arm_length_m + params.polish_reach_m);
+  CornerFitter fitter(field, index, map.geometry, params);
+  std::vector<CornerLandmark> corners;
+  for (const Pose2& candidate : findCornerCandidates(field, map.geometry, params)) {
+    const Pose2 pose = fitter.fit(candidate);
+    for (const CornerKind kind : {CornerKind::kInsideFree, CornerKind::kInsideSolid})
+      if (const auto corner = fitter.settle(pose, kind)) corners.push_back(*corner);
+  }
+  landmarks.corners = suppressNear(std::move(corners), params.suppression_m);
+  return landmarks;
+}
+
+}  // namespace cornerstone

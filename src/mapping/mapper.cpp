@@ -1,0 +1,99 @@
+#include "cornerstone/mapping/mapper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cornerstone/base/errors.h"
+
+namespace cornerstone {
+namespace {
+
+// The map's frame is the first scan's; a start needs some width, so that covariances stay invertible.
+Eigen::Matrix3d startCovariance() { return Eigen::Vector3d(1e-6, 1e-6, 1e-6).asDiagonal(); }
+
+// A robot put into a loaded map by hand: 0.3 m and 10 degrees.
+Eigen::Matrix3d handCovariance() { return Eigen::Vector3d(0.09, 0.09, 0.03).asDiagonal(); }
+
+}  // namespace
+
+void describe(ParamVisitor& visitor, MapperParams& params) {
+  visitor.group("grid", [&] { describe(visitor, params.grid); });
+  visitor.group("fit", [&] { describe(visitor, params.fit); });
+  visitor.group("odometry", [&] { describe(visitor, params.odometry); });
+  visitor.field("fit_scans", params.fit_scans);
+  visitor.field("new_look_m", params.new_look_m);
+  visitor.degrees("new_look_deg", params.new_look_rad);
+  visitor.field("min_new_share", params.min_new_share);
+  visitor.field("max_contradictions", params.max_contradictions);
+}
+
+Mapper::Mapper(const MapperParams& params) : params_(params), grid_(params.grid), filter_(params.odometry) {
+  requireValid(params.fit);
+  requirePositive(params.new_look_m, "new_look_m");
+  requirePositive(params.new_look_rad, "new_look_deg");
+  requireWithin(params.min_new_share, 0.001, 1, "min_new_share");
+  requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
+}
+
+void Mapper::predict(const Pose2& odom_from_base) {
+  if (start_) {
+    filter_.place({*start_, handCovariance()});
+  } else if (!last_odom_) {
+    filter_.place({map_from_odom_ * odom_from_base, startCovariance()});
+  } else {
+    filter_.step(last_odom_->inverse() * odom_from_base);
+  }
+  start_.reset();
+  last_odom_ = odom_from_base;
+}
+
+double Mapper::newShare() const {
+  if (!last_inserted_) return 1;
+  const Pose2 moved = last_inserted_->inverse() * filter_.pose().map_from_base;
+  const double share =
+      moved.translation().norm() / params_.new_look_m + std::abs(moved.yaw_rad) / params_.new_look_rad;
+  return std::clamp(share, params_.min_new_share, 1.0);
+}
+
+MapperUpdate Mapper::update(const RangeScan& scan, const Pose2& odom_from_base) {
+  if (!odom_from_base.isFinite()) throw InputError("odometry: odom_from_base is not finite");
+  predict(odom_from_base);
+  ScanFit fit;
+  if (params_.fit_scans) fit = fitScan(scan, grid_, filter_.pose(), params_.fit);
+  if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
+  contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
+  const Pose2 map_from_base = filter_.pose().map_from_base;
+  map_from_odom_ = map_from_base * odom_from_base.inverse();
+
+  const bool says_something =
+      std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
+  const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
+  const bool insert = says_something && trusted;
+  if (insert) {
+    grid_.insert(scan, map_from_base, newShare());
+    last_inserted_ = map_from_base;
+  }
+  return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
+}
+
+void Mapper::reset() {
+  grid_.clear();
+  filter_ = OdometryFilter(params_.odometry);
+  map_from_odom_ = {};
+  last_odom_.reset();
+  start_.reset();
+  last_inserted_.reset();
+  contradictions_ = 0;
+  ++epoch_;
+}
+
+void Mapper::load(const GridMap& map, const Pose2& map_from_base) {
+  if (!map_from_base.isFinite()) throw InputError("map to load: the robot's pose in it is not finite");
+  OccupancyGrid loaded(params_.grid);
+  loaded.load(map);
+  reset();
+  grid_ = std::move(loaded);
+  start_ = map_from_base;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,239 @@
+#include "cornerstone/mapping/occupancy_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cornerstone/base/errors.h"
+#include "scan_wedge.h"
+
+namespace cornerstone {
+namespace {
+
+constexpr float kMaxSurfaceWeight = 1e5F;  // 1/m^2, 3 mm: older looks fade, so that surfaces can move
+constexpr double kSurfaceOccupied = 0.3;   // P from which a cell's surface point counts
+
+bool finite(const RangeScan& scan) {
+  return std::all_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) {
+    return std::isfinite(beam.bearing_rad) && beam.width_rad > 0 &&
+           (!beam.hit || (beam.range_m > 0 && beam.near_m <= beam.range_m && beam.far_m >= beam.range_m &&
+                          std::isfinite(beam.far_m) && beam.sigma_m > 0 && beam.clear_m >= 0));
+  });
+}
+
+// Calls part(tile index, first cell within the tile, first cell within the window, count of columns) row by
+// row.
+template <typename Part>
+void forEachRowPart(const CellWindow& window, const Part& part) {
+  for (int row = 0; row < window.geometry.rows; ++row) {
+    int col = 0;
+    while (col < window.geometry.cols) {
+      const Cell cell{window.first.col + col, window.first.row + row};
+      const TileIndex tile = tileOf(cell);
+      const Cell first = firstCellOf(tile);
+      const Cell inside{cell.col - first.col, cell.row - first.row};
+      const int count = std::min(kTileCells - inside.col, window.geometry.cols - col);
+      part(tile, inside, Cell{col, row}, count);
+      col += count;
+    }
+  }
+}
+
+}  // namespace
+
+void describe(ParamVisitor& visitor, GridParams& params) {
+  visitor.field("resolution_m", params.resolution_m);
+  visitor.field("max_range_m", params.max_range_m);
+  visitor.field("prior_occupied", params.prior_occupied);
+  visitor.field("outlier_ratio", params.outlier_ratio);
+  visitor.field("free_step", params.free_step);
+  visitor.field("occupied_step", params.occupied_step);
+  visitor.field("min_log_odds", params.min_log_odds);
+  visitor.field("max_log_odds", params.max_log_odds);
+}
+
+OccupancyGrid::OccupancyGrid(const GridParams& params) : params_(params), scale_(0.03) {
+  requireWithin(params.resolution_m, 0.02, 0.20, "resolution_m");
+  requireWithin(params.max_range_m, 0.5, 100, "max_range_m");
+  requireWithin(params.prior_occupied, 0.001, 0.4, "prior_occupied");
+  requireWithin(params.outlier_ratio, 0.001, 0.5, "outlier_ratio");
+  requireWithin(params.free_step, 0.1, 5, "free_step");
+  requireWithin(params.occupied_step, 0.1, 7, "occupied_step");
+  requireWithin(params.min_log_odds, -7.5, -1, "min_log_odds");
+  requireWithin(params.max_log_odds, 1, 7.5, "max_log_odds");
+  scale_ = EvidenceScale(params.prior_occupied);
+}
+
+void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, double new_share) {
+  if (!map_from_base.isFinite() || !scan.base_from_sensor.isFinite())
+    throw InputError("pose of the range scan is not finite");
+  if (!finite(scan))
+    throw InputError("range scan: a beam is not finite or its interval is not around its range");
+  if (std::none_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; })) return;
+  ScanWedge wedge(scan, map_from_base * scan.base_from_sensor, *this);
+  wedge.apply(std::clamp(new_share, 0.0, 1.0));
+  ++version_;
+  writeWindow(wedge.window());
+  for (const SurfaceHit& hit : wedge.hits()) addHit(hit);
+}
+
+void OccupancyGrid::clear() {
+  tiles_.clear();
+  ++version_;
+}
+
+void OccupancyGrid::load(const GridMap& map) {
+  const GridGeometry& from = map.geometry;
+  if (std::abs(from.resolution_m - params_.resolution_m) > 1e-6)
+    throw InputError("map to load: its resolution differs from the grid's resolution_m");
+  // A map whose origin lies between cells is moved by less than half a cell.
+  const Cell first{static_cast<int>(std::lround(from.origin_x_m / from.resolution_m)),
+                   static_cast<int>(std::lround(from.origin_y_m / from.resolution_m))};
+  clear();
+  CellWindow window{from, first, {}};
+  window.cells.reserve(map.occupied.total());
+  for (int row = 0; row < from.rows; ++row)
+    for (int col = 0; col < from.cols; ++col) {
+      const double log_odds = EvidenceScale::logOddsOf(scale_.fromPublished(map.occupied(row, col)));
+      window.cells.push_back(
+          EvidenceScale::cellOf(std::clamp(log_odds, params_.min_log_odds, params_.max_log_odds)));
+    }
+  writeWindow(window);
+}
+
+GridGeometry OccupancyGrid::tileGeometry(TileIndex index) const {
+  const Cell first = firstCellOf(index);
+  return {params_.resolution_m, first.col * params_.resolution_m, first.row * params_.resolution_m,
+          kTileCells, kTileCells};
+}
+
+OccupancyGrid::Tile& OccupancyGrid::tileFor(TileIndex index) {
+  const auto found = tiles_.find(index);
+  if (found != tiles_.end()) return found->second;
+  Tile& tile = tiles_[index];
+  const GridGeometry at = tileGeometry(index);
+  const double size_m = kTileCells * at.resolution_m;
+  tile.cells.setSize(static_cast<float>(at.origin_x_m), static_cast<float>(at.origin_x_m + size_m),
+                     static_cast<float>(at.origin_y_m), static_cast<float>(at.origin_y_m + size_m),
+                     static_cast<float>(at.resolution_m));
+  if (tile.cells.getSizeX() != kTileCells || tile.cells.getSizeY() != kTileCells)
+    throw std::logic_error("OccupancyGrid: MRPT made a tile of another size");
+  for (int row = 0; row < kTileCells; ++row) std::fill_n(tile.cells.getRow(row), kTileCells, EvidenceCell{0});
+  return tile;
+}
+
+GridGeometry OccupancyGrid::geometry() const {
+  if (tiles_.empty()) return {params_.resolution_m, 0, 0, 0, 0};
+  TileIndex low = tiles_.begin()->first, high = low;
+  for (const auto& [index, tile] : tiles_) {
+    low = {std::min(low.col, index.col), std::min(low.row, index.row)};
+    high = {std::max(high.col, index.col), std::max(high.row, index.row)};
+  }
+  GridGeometry all = tileGeometry(low);
+  all.cols = (high.col - low.col + 1) * kTileCells;
+  all.rows = (high.row - low.row + 1) * kTileCells;
+  return all;
+}
+
+GridMap OccupancyGrid::snapshot() const {
+  GridMap map{geometry(), {}};
+  map.occupied = cv::Mat1f(map.geometry.rows, map.geometry.cols, kUnseen);
+  if (tiles_.empty()) return map;
+  const Cell first{static_cast<int>(std::lround(map.geometry.origin_x_m / params_.resolution_m)),
+                   static_cast<int>(std::lround(map.geometry.origin_y_m / params_.resolution_m))};
+  for (const auto& [index, tile] : tiles_) {
+    const Cell at = firstCellOf(index);
+    for (int row = 0; row < kTileCells; ++row) {
+      const EvidenceCell* cells = tile.cells.getRow(row);
+      float* out = map.occupied.ptr<float>(at.row - first.row + row) + (at.col - first.col);
+      for (int col = 0; col < kTileCells; ++col) out[col] = scale_.published(cells[col]);
+    }
+  }
+  return map;
+}
+
+std::vector<TileIndex> OccupancyGrid::changedTiles(std::uint64_t version) const {
+  std::vector<TileIndex> changed;
+  for (const auto& [index, tile] : tiles_)
+    if (tile.version > version) changed.push_back(index);
+  return changed;
+}
+
+GridMap OccupancyGrid::tile(TileIndex index) const {
+  GridMap map{tileGeometry(index), cv::Mat1f(kTileCells, kTileCells, kUnseen)};
+  const auto found = tiles_.find(index);
+  if (found == tiles_.end()) return map;
+  for (int row = 0; row < kTileCells; ++row)
+    for (int col = 0; col < kTileCells; ++col)
+      map.occupied(row, col) = scale_.published(found->second.cells.getRow(row)[col]);
+  return map;
+}
+
+CellWindow OccupancyGrid::readWindow(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m) const {
+  const GridGeometry whole{params_.resolution_m, 0, 0, 0, 0};
+  const Cell first = whole.cellAt(low_m), last = whole.cellAt(high_m);
+  const double resolution_m = params_.resolution_m;
+  CellWindow window{{resolution_m, first.col * resolution_m, first.row * resolution_m,
+                     last.col - first.col + 1, last.row - first.row + 1},
+                    first,
+                    {}};
+  window.cells.assign(
+      static_cast<std::size_t>(window.geometry.cols) * static_cast<std::size_t>(window.geometry.rows),
+      EvidenceCell{0});
+  forEachRowPart(window, [&](TileIndex index, Cell inside, Cell at, int count) {
+    const auto found = tiles_.find(index);
+    if (found != tiles_.end())
+      std::copy_n(found->second.cells.getRow(inside.row) + inside.col, count, &window.at(at));
+  });
+  return window;
+}
+
+void OccupancyGrid::writeWindow(const CellWindow& window) {
+  forEachRowPart(window, [&](TileIndex index, Cell inside, Cell at, int count) {
+    const EvidenceCell* cells = &window.cells[window.indexOf(at)];
+    const auto found = tiles_.find(index);
+    const bool known = found != tiles_.end();
+    if (!known && std::all_of(cells, cells + count, [](EvidenceCell cell) { return cell == 0; })) return;
+    Tile& tile = known ? found->second : tileFor(index);
+    EvidenceCell* old_cells = tile.cells.getRow(inside.row) + inside.col;
+    if (std::equal(cells, cells + count, old_cells)) return;
+    std::copy_n(cells, count, old_cells);
+    tile.version = version_;
+  });
+}
+
+void OccupancyGrid::addHit(const SurfaceHit& hit) {
+  const TileIndex index = tileOf(hit.cell);
+  const auto found = tiles_.find(index);
+  if (found == tiles_.end()) return;
+  Tile& tile = found->second;
+  if (tile.surface.empty()) tile.surface.resize(kTileCells * kTileCells);
+  const Cell first = firstCellOf(index);
+  SurfacePoint& point = tile.surface[static_cast<std::size_t>((hit.cell.row - first.row) * kTileCells +
+                                                              hit.cell.col - first.col)];
+  // What is being cleared is forgotten, so that a thing put there later has its own place.
+  if (EvidenceScale::logOddsOf(tile.cells.getRow(hit.cell.row - first.row)[hit.cell.col - first.col]) < 0)
+    point.weight = 0;
+  const double gain = hit.weight / (hit.weight + static_cast<double>(point.weight));
+  point.x_m += static_cast<float>(gain * (hit.point_m.x() - static_cast<double>(point.x_m)));
+  point.y_m += static_cast<float>(gain * (hit.point_m.y() - static_cast<double>(point.y_m)));
+  point.weight = std::min(kMaxSurfaceWeight, point.weight + static_cast<float>(hit.weight));
+}
+
+std::vector<SurfacePoint> OccupancyGrid::readSurface(const CellWindow& window) const {
+  std::vector<SurfacePoint> surface(window.cells.size());
+  forEachRowPart(window, [&](TileIndex index, Cell inside, Cell at, int count) {
+    const auto found = tiles_.find(index);
+    if (found == tiles_.end() || found->second.surface.empty()) return;
+    const SurfacePoint* points =
+        found->second.surface.data() + static_cast<std::ptrdiff_t>(inside.row * kTileCells + inside.col);
+    const std::size_t start = window.indexOf(at);
+    for (int i = 0; i < count; ++i) {
+      const std::size_t to = start + static_cast<std::size_t>(i);
+      if (points[i].weight > 0 && scale_.occupied(window.cells[to]) >= kSurfaceOccupied)
+        surface[to] = points[i];
+    }
+  });
+  return surface;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,156 @@
+#include "cornerstone/mapping/scan_fit.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "cornerstone/base/errors.h"
+#include "cornerstone/base/sqrt_information.h"
+#include "cornerstone/mapping/point_to_line_cost.h"
+#include "surface_lines.h"
+
+namespace cornerstone {
+namespace {
+
+struct BeamEnd {
+  Eigen::Vector2d in_base_m;
+  Eigen::Vector2d direction_in_base;
+  double sigma_m = 0;
+};
+
+std::vector<BeamEnd> endsOf(const RangeScan& scan, double max_range_m) {
+  std::vector<BeamEnd> ends;
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit || beam.range_m > max_range_m) continue;
+    const Eigen::Vector2d direction(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad));
+    ends.push_back({scan.base_from_sensor * (beam.range_m * direction),
+                    scan.base_from_sensor.rotation() * direction, beam.sigma_m});
+  }
+  return ends;
+}
+
+SurfaceLines surfacesAround(const std::vector<BeamEnd>& ends, const OccupancyGrid& grid,
+                            const Pose2& map_from_base, const ScanFitParams& params) {
+  Eigen::Vector2d low_m = map_from_base.translation(), high_m = low_m;
+  for (const BeamEnd& end : ends) {
+    const Eigen::Vector2d end_m = map_from_base * end.in_base_m;
+    low_m = low_m.cwiseMin(end_m);
+    high_m = high_m.cwiseMax(end_m);
+  }
+  const double margin_m = 2 * params.gate_m + params.line_radius_m;
+  return {grid, low_m.array() - margin_m, high_m.array() + margin_m, params.line_radius_m};
+}
+
+std::vector<LineMatch> pairEnds(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces,
+                                const Pose2& pose, const ScanFitParams& params) {
+  std::vector<LineMatch> matches;
+  for (const BeamEnd& end : ends) {
+    const auto line = surfaces.nearest(pose * end.in_base_m, params.gate_m);
+    if (!line) continue;
+    const double across_m = end.sigma_m * line->normal.dot(pose.rotation() * end.direction_in_base);
+    matches.push_back(
+        {end.in_base_m, line->point_m, line->normal, std::hypot(across_m, params.surface_sigma_m)});
+  }
+  return matches;
+}
+
+double whitened(const LineMatch& match, const Pose2& pose) {
+  return match.normal.dot(pose * match.point_in_base_m - match.surface_m) / match.sigma_m;
+}
+
+// Neighbouring beams share their errors: together `correlated` of them are one measurement.
+Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const PoseEstimate& prior,
+            const ScanFitParams& params, double correlated) {
+  double pose[3] = {start.x_m, start.y_m, start.yaw_rad};
+  const Pose2& mean = prior.map_from_base;
+  const Eigen::Vector3d expected(mean.x_m, mean.y_m, start.yaw_rad + wrapAngle(mean.yaw_rad - start.yaw_rad));
+  ceres::Problem problem;
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PosePriorCost, 3, 3>(
+                               new PosePriorCost(expected, sqrtInformation(prior.covariance))),
+                           nullptr, pose);
+  for (const LineMatch& match : matches)
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PointToLineCost, 1, 3>(new PointToLineCost(match)),
+        new ceres::ScaledLoss(new ceres::CauchyLoss(params.loss_sigmas), 1 / correlated,
+                              ceres::TAKE_OWNERSHIP),
+        pose);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 4;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return {pose[0], pose[1], wrapAngle(pose[2])};
+}
+
+Eigen::Matrix3d covarianceAt(const std::vector<LineMatch>& matches, const Pose2& pose,
+                             const PoseEstimate& prior, double correlated, double loss_sigmas) {
+  Eigen::Matrix3d information = prior.covariance.inverse();
+  for (const LineMatch& match : matches) {
+    const Eigen::Vector2d arm_m = pose.rotation() * match.point_in_base_m;
+    const Eigen::Vector3d row(match.normal.x(), match.normal.y(),
+                              match.normal.y() * arm_m.x() - match.normal.x() * arm_m.y());
+    const double loss = 1 / (1 + std::pow(whitened(match, pose) / loss_sigmas, 2));  // of Cauchy
+    information += loss / (match.sigma_m * match.sigma_m * correlated) * row * row.transpose();
+  }
+  const Eigen::Matrix3d covariance = information.inverse();
+  return (covariance + covariance.transpose()) / 2;
+}
+
+double agreeingShare(const std::vector<LineMatch>& matches, const Pose2& pose) {
+  int agreeing = 0;
+  for (const LineMatch& match : matches) agreeing += std::abs(whitened(match, pose)) < 3;
+  return matches.empty() ? 0 : static_cast<double>(agreeing) / static_cast<double>(matches.size());
+}
+
+}  // namespace
+
+void describe(ParamVisitor& visitor, ScanFitParams& params) {
+  visitor.field("gate_m", params.gate_m);
+  visitor.field("line_radius_m", params.line_radius_m);
+  visitor.field("surface_sigma_m", params.surface_sigma_m);
+  visitor.field("loss_sigmas", params.loss_sigmas);
+  visitor.field("min_agreeing_share", params.min_agreeing_share);
+  visitor.field("min_matches", params.min_matches);
+  visitor.field("max_rounds", params.max_rounds);
+}
+
+void requireValid(const ScanFitParams& params) {
+  requireWithin(params.gate_m, 0.02, 2, "gate_m");
+  requireWithin(params.line_radius_m, 0.05, 2, "line_radius_m");
+  requireWithin(params.surface_sigma_m, 1e-4, 0.5, "surface_sigma_m");
+  requireWithin(params.loss_sigmas, 0.1, 100, "loss_sigmas");
+  requireWithin(params.min_agreeing_share, 0, 1, "min_agreeing_share");
+  requireWithin(params.min_matches, 3, 10000, "min_matches");
+  requireWithin(params.max_rounds, 1, 100, "max_rounds");
+}
+
+ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const PoseEstimate& prior,
+                const ScanFitParams& params) {
+  ScanFit fit;
+  fit.pose = prior;
+  const std::vector<BeamEnd> ends = endsOf(scan, grid.params().max_range_m);
+  if (ends.empty() || grid.empty()) return fit;
+  const SurfaceLines surfaces = surfacesAround(ends, grid, prior.map_from_base, params);
+  const double correlated = std::max(1.0, scan.correlated_beams);
+  Pose2 pose = prior.map_from_base;
+  std::vector<LineMatch> matches;
+  for (int round = 0; round < params.max_rounds; ++round) {
+    matches = pairEnds(ends, surfaces, pose, params);
+    if (static_cast<int>(matches.size()) < params.min_matches) return fit;
+    const Pose2 before = pose;
+    pose = solve(matches, pose, prior, params, correlated);
+    if (!pose.isFinite()) return fit;
+    const Pose2 moved = before.inverse() * pose;
+    if (moved.translation().norm() < 5e-4 && std::abs(moved.yaw_rad) < 2e-4) break;
+  }
+  fit.matches = static_cast<int>(matches.size());
+  fit.agreeing_share = agreeingShare(matches, pose);
+  fit.state = fit.agreeing_share < params.min_agreeing_share ? FitState::kContradicts : FitState::kFitted;
+  if (fit.state == FitState::kFitted)
+    fit.pose = {pose, covarianceAt(matches, pose, prior, correlated, params.loss_sigmas)};
+  return fit;
+}
+
+}  // namespace cornerstone

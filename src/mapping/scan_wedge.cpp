@@ -1,0 +1,142 @@
+#include "scan_wedge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cornerstone {
+namespace {
+
+constexpr int kMaxBeamsPerCell = 8;  // of many beams over a cell beside the sensor, these are looked at
+constexpr double kMinHitCause =
+    0.3;  // a surface point takes part in a look that it caused by this probability
+constexpr double kSmallestProbability = 1e-9;
+
+double logit(double probability) {
+  const double p = std::clamp(probability, kSmallestProbability, 1 - kSmallestProbability);
+  return std::log(p / (1 - p));
+}
+
+double reachOf(const Beam& beam, double max_range_m) {
+  return std::min(max_range_m, beam.range_m + 2 * (beam.far_m - beam.range_m));
+}
+
+// The rectangle of cells that the sensor and the ends of its beams span.
+CellWindow windowOf(const RangeScan& scan, const Pose2& map_from_sensor, const OccupancyGrid& grid) {
+  const double margin_m = 2 * grid.params().resolution_m;
+  Eigen::Vector2d low_m = map_from_sensor.translation(), high_m = low_m;
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit) continue;
+    const double reach_m = reachOf(beam, grid.params().max_range_m) + margin_m;
+    for (const double side : {-0.5, 0.5}) {
+      const double angle_rad = beam.bearing_rad + side * beam.width_rad;
+      const Eigen::Vector2d end_m =
+          map_from_sensor * (reach_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)));
+      low_m = low_m.cwiseMin(end_m);
+      high_m = high_m.cwiseMax(end_m);
+    }
+  }
+  return grid.readWindow(low_m, high_m);
+}
+
+}  // namespace
+
+ScanWedge::ScanWedge(const RangeScan& scan, const Pose2& map_from_sensor, const OccupancyGrid& grid)
+    : grid_(grid), map_from_sensor_(map_from_sensor), window_(windowOf(scan, map_from_sensor, grid)) {
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit) continue;
+    beams_.emplace_back(beam, window_, grid);
+    beams_.back().trace(map_from_sensor.translation(), map_from_sensor.yaw_rad + beam.bearing_rad);
+    reach_m_ = std::max(reach_m_, beams_.back().end_m());
+  }
+  makeBearingTable(scan);
+}
+
+void ScanWedge::makeBearingTable(const RangeScan& scan) {
+  if (beams_.empty()) return;
+  double narrowest_rad = M_PI;
+  for (const Beam& beam : scan.beams) narrowest_rad = std::min(narrowest_rad, beam.width_rad);
+  table_step_rad_ = std::max(narrowest_rad / 2, 2 * M_PI / 16384);
+  table_start_rad_ = scan.beams.front().bearing_rad - scan.beams.front().width_rad / 2;
+  const double end_rad = scan.beams.back().bearing_rad + scan.beams.back().width_rad / 2;
+  beam_at_.assign(static_cast<std::size_t>((end_rad - table_start_rad_) / table_step_rad_) + 1, -1);
+  int index = 0;
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit) continue;
+    const double first = (beam.bearing_rad - beam.width_rad / 2 - table_start_rad_) / table_step_rad_;
+    const double last = (beam.bearing_rad + beam.width_rad / 2 - table_start_rad_) / table_step_rad_;
+    for (auto i = static_cast<std::size_t>(std::max(0.0, std::round(first)));
+         i < std::min(beam_at_.size(), static_cast<std::size_t>(std::max(0.0, std::round(last)))); ++i)
+      beam_at_[i] = index;
+    ++index;
+  }
+}
+
+void ScanWedge::apply(double new_share) {
+  const Eigen::Vector2d sensor_m = map_from_sensor_.translation();
+  for (int row = 0; row < window_.geometry.rows; ++row)
+    for (int col = 0; col < window_.geometry.cols; ++col) {
+      const Eigen::Vector2d from_sensor_m = window_.geometry.centreOf({col, row}) - sensor_m;
+      if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_)
+        updateCell({col, row}, from_sensor_m, new_share);
+    }
+}
+
+ScanWedge::Look ScanWedge::lookAt(double range_m, double bearing_rad, double occupied) const {
+  const double half_rad = 0.5 * grid_.params().resolution_m / std::max(range_m, grid_.params().resolution_m);
+  const double size = static_cast<double>(beam_at_.size());
+  double first = std::floor((bearing_rad - half_rad - table_start_rad_) / table_step_rad_);
+  double last = std::floor((bearing_rad + half_rad - table_start_rad_) / table_step_rad_);
+  Look look;
+  if (last < 0 || first >= size) return look;
+  if (last - first <= 2) first = last = std::floor((bearing_rad - table_start_rad_) / table_step_rad_);
+  if (first < 0 || last >= size) return look;  // at the edge of the view: not wholly seen
+  const int stride = std::max(1, static_cast<int>((last - first) / kMaxBeamsPerCell));
+  int previous = -1;
+  for (auto i = static_cast<std::size_t>(first); i <= static_cast<std::size_t>(last);
+       i += static_cast<std::size_t>(stride)) {
+    if (beam_at_[i] < 0 || beam_at_[i] == previous) continue;
+    previous = beam_at_[i];
+    const BeamEvidence& beam = beams_[static_cast<std::size_t>(previous)];
+    const bool before = range_m < beam.start_m();
+    if (range_m > beam.end_m() || (range_m > beam.clear_m() && before)) continue;
+    const double cause = before ? 0 : beam.causeOf(range_m, occupied);
+    look.posterior += before ? beam.outlier() * occupied : beam.posteriorOf(range_m, occupied);
+    ++look.beams;
+    if (cause <= look.cause) continue;
+    look.cause = cause;
+    look.beam = &beam;
+  }
+  return look;
+}
+
+void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, double new_share) {
+  const double bearing_rad =
+      wrapAngle(std::atan2(from_sensor_m.y(), from_sensor_m.x()) - map_from_sensor_.yaw_rad);
+  const double range_m = from_sensor_m.norm();
+  EvidenceCell& evidence = window_.at(cell);
+  const double occupied = grid_.scale().occupied(evidence);
+  const Look look = lookAt(range_m, bearing_rad, occupied);
+  if (look.beams == 0) return;
+  const double change = logit(look.posterior / look.beams) - logit(occupied);
+  evidence = updated(evidence, change, new_share);
+  if (look.cause < kMinHitCause) return;
+  const double sigma_m = look.beam->sigma_m();
+  hits_.push_back({{window_.first.col + cell.col, window_.first.row + cell.row},
+                   look.beam->end(),
+                   new_share * look.cause / (sigma_m * sigma_m)});
+}
+
+EvidenceCell ScanWedge::updated(EvidenceCell cell, double change, double new_share) const {
+  const GridParams& params = grid_.params();
+  const double before = EvidenceScale::logOddsOf(cell);
+  const bool confirms = change * before >= 0;
+  const double step =
+      std::clamp(change, -params.free_step, params.occupied_step) * (confirms ? new_share : 1);
+  const EvidenceCell after =
+      EvidenceScale::cellOf(std::clamp(before + step, params.min_log_odds, params.max_log_odds));
+  // 0 is kept for "never seen": evidence that cancels stays one step on the side of the last look.
+  if (after == 0 && cell != 0) return static_cast<EvidenceCell>(change > 0 ? -1 : 1);
+  return after;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,30 @@
+// The surfaces of a piece of the map as points with normals, found by place.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cornerstone/mapping/occupancy_grid.h"
+
+namespace cornerstone {
+
+struct SurfaceLine {
+  Eigen::Vector2d point_m;
+  Eigen::Vector2d normal;
+};
+
+class SurfaceLines {
+ public:
+  SurfaceLines(const OccupancyGrid& grid, const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m,
+               double line_radius_m);
+  // Nearest surface point within gate_m, if its neighbours form a line.
+  std::optional<SurfaceLine> nearest(const Eigen::Vector2d& point_m, double gate_m) const;
+
+ private:
+  std::optional<SurfaceLine> lineAround(Cell cell) const;
+  CellWindow window_;
+  std::vector<SurfacePoint> surface_;
+  double line_radius_m_;
+};
+
+}  // namespace cornerstone

@@ -1,0 +1,46 @@
+#include "cornerstone/mapping/tile_map.h"
+
+#include <algorithm>
+#include <climits>
+
+#include "cornerstone/base/errors.h"
+
+namespace cornerstone {
+
+TileMap::TileMap(double resolution_m, int tile_cells) : resolution_m_(resolution_m), tile_cells_(tile_cells) {
+  requirePositive(resolution_m, "tiles: resolution");
+  requirePositive(tile_cells, "tiles: size");
+}
+
+void TileMap::put(int col, int row, const cv::Mat1f& occupied) {
+  if (occupied.rows != tile_cells_ || occupied.cols != tile_cells_)
+    throw InputError("tiles: a tile of another size");
+  if (col % tile_cells_ != 0 || row % tile_cells_ != 0)
+    throw InputError("tiles: a tile between the places of tiles");
+  tiles_[{row / tile_cells_, col / tile_cells_}] = occupied.clone();
+}
+
+GridMap TileMap::assemble() const {
+  GridMap map;
+  map.geometry.resolution_m = resolution_m_;
+  if (tiles_.empty()) return map;
+  int first_row = INT_MAX, first_col = INT_MAX, last_row = INT_MIN, last_col = INT_MIN;
+  for (const auto& [place, tile] : tiles_) {
+    first_row = std::min(first_row, place.first);
+    last_row = std::max(last_row, place.first);
+    first_col = std::min(first_col, place.second);
+    last_col = std::max(last_col, place.second);
+  }
+  map.geometry.cols = (last_col - first_col + 1) * tile_cells_;
+  map.geometry.rows = (last_row - first_row + 1) * tile_cells_;
+  map.geometry.origin_x_m = first_col * tile_cells_ * resolution_m_;
+  map.geometry.origin_y_m = first_row * tile_cells_ * resolution_m_;
+  map.occupied.create(map.geometry.rows, map.geometry.cols);
+  map.occupied.setTo(kUnseen);
+  for (const auto& [place, tile] : tiles_)
+    tile.copyTo(map.occupied(cv::Rect((place.second - first_col) * tile_cells_,
+                                      (place.first - first_row) * tile_cells_, tile_cells_, tile_cells_)));
+  return map;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,120 @@
+#include "cornerstone/registration/edge_refinement.h"
+
+#include <ceres/tiny_solver.h>
+#include <ceres/tiny_solver_cost_function_adapter.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "cornerstone/registration/line_cost.h"
+
+namespace cornerstone {
+namespace {
+
+using Adapter = ceres::TinySolverCostFunctionAdapter<Eigen::Dynamic, 3>;
+
+constexpr std::size_t kMinPartners = 10;
+
+// Partners of one map's edges in the other; `forward`: the edges are the current map's.
+void addPairs(const EdgeIndex& from, const EdgeIndex& to, const Pose2& to_from_from, double reach_m,
+              bool forward, std::size_t max_edges, const Eigen::Vector2d& pivot_m,
+              std::vector<LinePair>& pairs) {
+  const Eigen::Matrix2d turn = to_from_from.rotation();
+  const std::size_t step = (from.edges().size() + max_edges - 1) / max_edges;
+  for (std::size_t i = 0; i < from.edges().size(); i += step) {
+    const EdgePoint& edge = from.edges()[i];
+    const Eigen::Vector2d normal = turn * edge.normal;
+    const int partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
+    if (partner < 0) continue;
+    const EdgePoint& other = to.edges()[static_cast<std::size_t>(partner)];
+    const Eigen::Vector2d mean = (normal + other.normal).normalized();
+    if (forward)
+      pairs.push_back({edge.position_m - pivot_m, other.position_m, mean, 1});
+    else
+      pairs.push_back({other.position_m - pivot_m, edge.position_m, turn.transpose() * mean, 1});
+  }
+}
+
+// Cauchy weights for the scatter that the pairs show.
+double weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x) {
+  std::vector<double> residuals(pairs.size());
+  for (LinePair& pair : pairs) pair.weight = 1;
+  const double* block = x.data();
+  LineCost(pairs).Evaluate(&block, residuals.data(), nullptr);
+  std::vector<double> sizes(residuals.size());
+  std::transform(residuals.begin(), residuals.end(), sizes.begin(), [](double r) { return std::abs(r); });
+  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
+  const double scale =
+      std::max(1.4826 * sizes[sizes.size() / 2], 1e-3);  // of a normal distribution with this median
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    pairs[i].weight = 1 / std::sqrt(1 + residuals[i] * residuals[i] / (scale * scale));
+  return scale;
+}
+
+Pose2 poseAt(const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m) {
+  const Pose2 turn{0, 0, wrapAngle(x[2])};
+  const Eigen::Vector2d shift = x.head<2>() - turn * pivot_m;
+  return {shift.x(), shift.y(), turn.yaw_rad};
+}
+
+void judge(const std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m,
+           RefinedPose& refined) {
+  const auto count = static_cast<Eigen::Index>(pairs.size());
+  Eigen::VectorXd residuals(count);
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> jacobian(count, 3);
+  const double* block = x.data();
+  double* jacobians[] = {jacobian.data()};
+  LineCost(pairs).Evaluate(&block, residuals.data(), jacobians);
+  double weights = 0;
+  for (const LinePair& pair : pairs) weights += pair.weight * pair.weight;
+  refined.rms_m = std::sqrt(residuals.squaredNorm() / weights);
+  refined.partners = static_cast<int>(count);
+  const Eigen::Matrix3d information = jacobian.transpose() * jacobian;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(information.topLeftCorner<2, 2>());
+  refined.spread = axes.eigenvalues()[0] / axes.eigenvalues()[1];
+  // Both maps' edges see the same walls, so each pair counts half.
+  const Eigen::Matrix3d at_pivot = 2 * refined.rms_m * refined.rms_m * information.inverse();
+  // From the pivot to the current map's origin.
+  const Eigen::Vector2d lever = Pose2{0, 0, x[2]} * Eigen::Vector2d(-pivot_m);
+  Eigen::Matrix3d by_pivot = Eigen::Matrix3d::Identity();
+  by_pivot(0, 2) = -lever.y();
+  by_pivot(1, 2) = lever.x();
+  refined.covariance = by_pivot * at_pivot * by_pivot.transpose();
+}
+
+}  // namespace
+
+std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeIndex& current,
+                                         const Pose2& guess, const RefinementOptions& options) {
+  Eigen::Vector2d pivot_m(0, 0);
+  for (const EdgePoint& edge : current.edges())
+    pivot_m += edge.position_m / static_cast<double>(current.edges().size());
+  const Eigen::Vector2d start = guess * pivot_m;
+  Eigen::Vector3d x(start.x(), start.y(), guess.yaw_rad);
+  std::vector<LinePair> pairs;
+  for (int round = 0; round < options.rounds; ++round) {
+    const double share = options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 1;
+    const double reach_m =
+        options.first_reach_m * std::pow(options.last_reach_m / options.first_reach_m, share);
+    const Pose2 pose = poseAt(x, pivot_m);
+    pairs.clear();
+    addPairs(current, reference, pose, reach_m, true, options.max_edges, pivot_m, pairs);
+    addPairs(reference, current, pose.inverse(), reach_m, false, options.max_edges, pivot_m, pairs);
+    if (pairs.size() < kMinPartners) return std::nullopt;
+    weigh(pairs, x);
+    const LineCost cost(pairs);
+    const Adapter adapter(cost);
+    ceres::TinySolver<Adapter> solver;
+    solver.options.max_num_iterations = 3;
+    solver.Solve(adapter, &x);
+    if (!x.allFinite()) return std::nullopt;
+  }
+  RefinedPose refined;
+  refined.reference_from_current = poseAt(x, pivot_m);
+  judge(pairs, x, pivot_m, refined);
+  if (!refined.covariance.allFinite()) return std::nullopt;
+  return refined;
+}
+
+}  // namespace cornerstone

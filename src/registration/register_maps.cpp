@@ -1,0 +1,144 @@
+#include "cornerstone/registration/register_maps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cornerstone/registration/corner_matching.h"
+#include "cornerstone/registration/decision.h"
+#include "cornerstone/registration/edge_refinement.h"
+#include "cornerstone/registration/pose_search.h"
+#include "cornerstone/registration/proposals.h"
+
+namespace cornerstone {
+namespace {
+
+constexpr PairingLimits kMatched{
+    0.3, 0.2};  // corners this near under the answer are the same: several sigma of both
+constexpr double kMergeSquare_m = 0.25;  // proposals closer than the coarse reach score alike
+constexpr double kMergeAngle_rad = 3 * M_PI / 180;
+constexpr double kPriorStep_m = 0.4;  // of the poses tried around a prior: inside the climb's reach
+constexpr double kPriorStep_rad = 4 * M_PI / 180;
+
+MapEvidence evidenceOf(const MapView& view, const RegistrationParams& params) {
+  const cv::Mat1b states = cellStates(view.map, {});
+  std::vector<EdgePoint> edges = thinEdges(view.landmarks.edges, params.fine_cell_m);
+  Eigen::Vector2d middle(0, 0);
+  for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
+  std::vector<EdgeSample> samples = samplesOf(edges);
+  EvidenceGrid coarse(view.map, states, edges, params.coarse_cell_m, params.coarse_reach_m);
+  EvidenceGrid fine(view.map, states, edges, params.fine_cell_m, params.fine_reach_m);
+  return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
+}
+
+double overlapOf(const EvidenceGrid& reference, const EvidenceGrid& current, const Pose2& pose) {
+  const Eigen::Matrix2f rotation = pose.rotation().cast<float>();
+  const Eigen::Vector2f shift = pose.translation().cast<float>();
+  const auto squares = current.knownSquares();
+  const auto known = std::count_if(squares.begin(), squares.end(), [&](const Eigen::Vector2f& p) {
+    return reference.known(rotation * p + shift);
+  });
+  return squares.empty() ? 0 : static_cast<double>(known) / static_cast<double>(squares.size());
+}
+
+// The prior, what the paper's matching makes of it, and poses all around it.
+std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, const MapView& current,
+                                 const RegistrationParams& params) {
+  std::vector<Pose2> poses{prior};
+  for (int round = 0; round < 2; ++round) {
+    const CornerPairs pairs = pairNearest(reference.landmarks.corners, current.landmarks.corners,
+                                          poses.back(), {params.match_distance_m, params.prior_angle_rad});
+    const auto solved =
+        solvePairs(reference.landmarks.corners, current.landmarks.corners, pairs, poses.back());
+    if (solved) poses.push_back(*solved);
+  }
+  const int steps = static_cast<int>(std::ceil(params.prior_radius_m / kPriorStep_m));
+  const int turns = static_cast<int>(std::ceil(params.prior_angle_rad / kPriorStep_rad));
+  for (int i = -steps; i <= steps; ++i) {
+    for (int j = -steps; j <= steps; ++j) {
+      for (int k = -turns; k <= turns; ++k) {
+        poses.push_back({prior.x_m + i * kPriorStep_m, prior.y_m + j * kPriorStep_m,
+                         wrapAngle(prior.yaw_rad + k * kPriorStep_rad)});
+      }
+    }
+  }
+  return poses;
+}
+
+std::vector<Pose2> propose(const MapView& reference, const MapView& current, const MapEvidence& there,
+                           const MapEvidence& here) {
+  const DirectionMatch directions(there.edges, here.edges);
+  const auto poses = proposeFromCorners(reference.landmarks.corners, current.landmarks.corners, directions);
+  return mergeProposals(poses, here.middle_m, kMergeSquare_m, kMergeAngle_rad);
+}
+
+// Far from the prior nothing counts, neither as an answer nor as a rival.
+void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const RegistrationParams& params) {
+  const Eigen::Vector2d origin(0, 0);  // of the current map's frame: what the prior places
+  const auto is_far = [&](const Hypothesis& h) {
+    return areDifferent(h.reference_from_current, prior, origin, params.prior_radius_m,
+                        params.prior_angle_rad);
+  };
+  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), is_far), hypotheses.end());
+}
+
+}  // namespace
+
+std::optional<Registration> registerMaps(const MapView& reference, const MapView& current,
+                                         const std::optional<Pose2>& prior, const RegistrationParams& params,
+                                         std::string* refusal) {
+  const auto refuse = [refusal](const std::string& why) -> std::optional<Registration> {
+    if (refusal != nullptr) *refusal = why;
+    return std::nullopt;
+  };
+  if (reference.landmarks.edges.empty()) return refuse("the reference map has no edges");
+  if (current.landmarks.edges.empty()) return refuse("the current map has no edges");
+  const MapEvidence there = evidenceOf(reference, params), here = evidenceOf(current, params);
+  const std::vector<Pose2> proposals =
+      prior ? proposeAround(*prior, reference, current, params) : propose(reference, current, there, here);
+  std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
+  if (prior) keepNear(best, *prior, params);
+  if (best.empty() || best.front().value <= 0) return refuse("no pose agrees with both maps");
+  const Hypothesis& winner = best.front();
+
+  const EdgeIndex reference_index(reference.landmarks.edges, params.refine_reach_m);
+  const EdgeIndex current_index(current.landmarks.edges, params.refine_reach_m);
+  RefinementOptions options;
+  options.first_reach_m = params.refine_reach_m;
+  const auto refined = refineOnEdges(reference_index, current_index, winner.reference_from_current, options);
+  if (!refined) return refuse("too few edges agree");
+
+  Registration registration;
+  registration.reference_from_current = refined->reference_from_current;
+  registration.covariance = refined->covariance;
+  registration.matches = pairNearest(reference.landmarks.corners, current.landmarks.corners,
+                                     refined->reference_from_current, kMatched);
+  registration.rms_m = refined->rms_m;
+  registration.agreement = winner.score.agreement();
+  registration.overlap = overlapOf(there.coarse, here.coarse, refined->reference_from_current);
+  registration.second_best = best.size() > 1 ? std::max(best[1].value, 0.0) / winner.value : 0;
+  const auto reason = reasonToRefuse({winner.score.agree * params.fine_cell_m, registration.agreement,
+                                      registration.second_best, refined->spread, prior.has_value()},
+                                     params);
+  if (reason) return refuse(*reason);
+  return registration;
+}
+
+void describe(ParamVisitor& visitor, RegistrationParams& params) {
+  visitor.field("match_distance_m", params.match_distance_m);
+  visitor.field("prior_radius_m", params.prior_radius_m);
+  visitor.degrees("prior_angle_deg", params.prior_angle_rad);
+  visitor.field("coarse_cell_m", params.coarse_cell_m);
+  visitor.field("coarse_reach_m", params.coarse_reach_m);
+  visitor.field("fine_cell_m", params.fine_cell_m);
+  visitor.field("fine_reach_m", params.fine_reach_m);
+  visitor.field("contradiction", params.contradiction);
+  visitor.field("different_m", params.different_m);
+  visitor.degrees("different_deg", params.different_rad);
+  visitor.field("refine_reach_m", params.refine_reach_m);
+  visitor.field("max_second_best", params.max_second_best);
+  visitor.field("min_agreement", params.min_agreement);
+  visitor.field("min_agreeing_m", params.min_agreeing_m);
+  visitor.field("min_spread", params.min_spread);
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,138 @@
+#include "cornerstone/ros/landmark_messages.h"
+
+#include <cmath>
+#include <string>
+
+#include "cornerstone/base/errors.h"
+#include "cornerstone/ros/transforms.h"
+
+namespace cornerstone {
+namespace {
+
+using visualization_msgs::Marker;
+
+constexpr double kLineWidth_m =
+    0.04;  // thinner than a cell of 0.05 m, still seen in rviz at a building's scale
+
+std_msgs::ColorRGBA colour(float red, float green, float blue) {
+  std_msgs::ColorRGBA rgba;
+  rgba.r = red;
+  rgba.g = green;
+  rgba.b = blue;
+  rgba.a = 1;
+  return rgba;
+}
+
+Marker marker(const std_msgs::Header& header, const std::string& ns, int type) {
+  Marker shape;
+  shape.header = header;
+  shape.ns = ns;
+  shape.type = type;
+  shape.pose.orientation.w = 1;
+  shape.scale.x = kLineWidth_m;
+  shape.scale.y = kLineWidth_m;
+  shape.color = colour(1, 1, 1);
+  return shape;
+}
+
+geometry_msgs::Point point(const Eigen::Vector2d& place_m, double height_m) {
+  geometry_msgs::Point message;
+  message.x = place_m.x();
+  message.y = place_m.y();
+  message.z = height_m;
+  return message;
+}
+
+std::uint8_t toState(RegistrationState state) {
+  switch (state) {
+    case RegistrationState::kCandidate:
+      return MapRegistration::CANDIDATE;
+    case RegistrationState::kRegistered:
+      return MapRegistration::REGISTERED;
+    case RegistrationState::kLost:
+      return MapRegistration::LOST;
+    default:
+      return MapRegistration::NONE;
+  }
+}
+
+}  // namespace
+
+Corner toMessage(const CornerLandmark& corner) {
+  Corner message;
+  message.x = corner.pose.x_m;
+  message.y = corner.pose.y_m;
+  message.yaw = corner.pose.yaw_rad;
+  message.covariance = toRowMajor(corner.covariance);
+  message.rms = corner.rms_m;
+  message.kind = corner.kind == CornerKind::kInsideFree ? Corner::INSIDE_FREE : Corner::INSIDE_SOLID;
+  return message;
+}
+
+CornerLandmark fromMessage(const Corner& message) {
+  CornerLandmark corner;
+  corner.pose = {message.x, message.y, message.yaw};
+  corner.covariance = fromRowMajor(message.covariance);
+  corner.rms_m = message.rms;
+  if (!corner.pose.isFinite() || !corner.covariance.allFinite() || !std::isfinite(corner.rms_m))
+    throw InputError("landmarks: a corner is not finite");
+  if (message.kind > Corner::INSIDE_SOLID) throw InputError("landmarks: a corner of unknown kind");
+  corner.kind = message.kind == Corner::INSIDE_FREE ? CornerKind::kInsideFree : CornerKind::kInsideSolid;
+  return corner;
+}
+
+MapRegistration toMessage(const RegistrationTracker& tracker, double now_s) {
+  MapRegistration message;
+  message.state = toState(tracker.state());
+  message.reason = tracker.reason();
+  if (!tracker.estimate()) return message;
+  const Registration& estimate = *tracker.estimate();
+  message.x = estimate.reference_from_current.x_m;
+  message.y = estimate.reference_from_current.y_m;
+  message.yaw = estimate.reference_from_current.yaw_rad;
+  message.covariance = toRowMajor(tracker.covarianceAt(now_s));
+  message.matched = static_cast<unsigned>(estimate.matches.size());
+  message.rms = estimate.rms_m;
+  message.overlap = estimate.overlap;
+  message.second_best = estimate.second_best;
+  message.evidence_age = now_s - tracker.evidenceTime();
+  return message;
+}
+
+visualization_msgs::MarkerArray toMarkers(const Landmarks& landmarks, double arm_length_m,
+                                          const std_msgs::Header& header) {
+  Marker edges = marker(header, "edges", Marker::POINTS);
+  edges.color = colour(0.2f, 0.8f, 1);
+  for (const EdgePoint& edge : landmarks.edges) edges.points.push_back(point(edge.position_m, 0.02));
+  Marker arms = marker(header, "corners", Marker::LINE_LIST);
+  for (const CornerLandmark& corner : landmarks.corners) {
+    const auto shade = corner.kind == CornerKind::kInsideFree ? colour(1, 0.3f, 0) : colour(0.9f, 0, 0.9f);
+    for (const Eigen::Vector2d& arm : {Eigen::Vector2d(arm_length_m, 0), Eigen::Vector2d(0, arm_length_m)}) {
+      arms.points.push_back(point(corner.pose.translation(), 0.05));
+      arms.points.push_back(point(corner.pose * arm, 0.05));
+      arms.colors.insert(arms.colors.end(), 2, shade);
+    }
+  }
+  visualization_msgs::MarkerArray markers;
+  markers.markers = {edges, arms};
+  return markers;
+}
+
+visualization_msgs::MarkerArray toMatchMarkers(const MapRegistration& registration) {
+  std_msgs::Header header = registration.header;
+  header.frame_id = registration.reference_frame;
+  Marker lines = marker(header, "matches", Marker::LINE_LIST);
+  lines.color = colour(1, 1, 0);
+  const Pose2 reference_from_current{registration.x, registration.y, registration.yaw};
+  for (std::size_t i = 0; i < registration.reference_corners.size(); ++i) {
+    const Corner& reference = registration.reference_corners[i];
+    const Corner& current = registration.current_corners[i];
+    lines.points.push_back(point({reference.x, reference.y}, 0.1));
+    lines.points.push_back(point(reference_from_current * Eigen::Vector2d(current.x, current.y), 0.6));
+  }
+  visualization_msgs::MarkerArray markers;
+  markers.markers = {lines};
+  return markers;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,39 @@
+#include "cornerstone/ros/nodelet_params.h"
+
+namespace cornerstone {
+
+void describe(ParamVisitor& visitor, TrinocularStereoParams& params) {
+  visitor.field("images", params.images);
+  visitor.field("third_camera", params.third_camera);
+  visitor.field("sync_tolerance_s", params.sync_tolerance_s);
+  visitor.field("queue_size", params.queue_size);
+  visitor.group("stereo", [&] { describe(visitor, params.stereo); });
+}
+
+void describe(ParamVisitor& visitor, OccupancyMapperParams& params) {
+  visitor.field("robot", params.robot);
+  visitor.group("frames", [&] { describe(visitor, params.frames); });
+  visitor.field("input", params.input);
+  visitor.field("disparity_sigma_px", params.disparity_sigma_px);
+  visitor.field("tf_timeout_s", params.tf_timeout_s);
+  visitor.field("publish_period_s", params.publish_period_s);
+  visitor.field("tf_period_s", params.tf_period_s);
+  visitor.group("scan", [&] { describe(visitor, params.scan); });
+  visitor.group("depth", [&] { describe(visitor, params.depth); });
+  visitor.group("laser", [&] { describe(visitor, params.laser); });
+  visitor.group("mapper", [&] { describe(visitor, params.mapper); });
+}
+
+void describe(ParamVisitor& visitor, RegistrationNodeletParams& params) {
+  visitor.field("robot", params.robot);
+  visitor.field("reference_robot", params.reference_robot);
+  visitor.group("frames", [&] { describe(visitor, params.frames); });
+  visitor.field("reference_map_frame", params.reference_map_frame);
+  visitor.field("period_s", params.period_s);
+  visitor.field("tf_period_s", params.tf_period_s);
+  visitor.group("landmarks", [&] { describe(visitor, params.landmarks); });
+  visitor.group("registration", [&] { describe(visitor, params.registration); });
+  visitor.group("tracker", [&] { describe(visitor, params.tracker); });
+}
+
+}  // namespace cornerstone

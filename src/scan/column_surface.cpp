@@ -1,0 +1,80 @@
+#include "column_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cornerstone {
+namespace {
+
+// First index from which `count` pixels lie within a window of agreement, nearest first; size() when there is
+// none.
+std::size_t firstAgreeing(const std::vector<ColumnPixel>& pixels, int count, double agree_sigmas) {
+  const auto needed = static_cast<std::size_t>(count);
+  for (std::size_t i = 0; i + needed <= pixels.size(); ++i) {
+    const ColumnPixel& last = pixels[i + needed - 1];
+    if (pixels[i].q - last.q <= agree_sigmas * (pixels[i].sigma_q + last.sigma_q)) return i;
+  }
+  return pixels.size();
+}
+
+struct WeightedMean {
+  double weight = 0;
+  double q = 0;
+  double scatter = 0;  // weighted variance of the pixels
+  int count = 0;
+  Eigen::Vector2d direction = Eigen::Vector2d::Zero();
+};
+
+WeightedMean meanAround(const std::vector<ColumnPixel>& pixels, double q, double agree_sigmas) {
+  WeightedMean mean;
+  double squares = 0;
+  for (const ColumnPixel& pixel : pixels) {
+    if (std::abs(pixel.q - q) > agree_sigmas * pixel.sigma_q) continue;
+    const double weight = 1 / (pixel.sigma_q * pixel.sigma_q);
+    mean.weight += weight;
+    mean.q += weight * pixel.q;
+    squares += weight * pixel.q * pixel.q;
+    mean.direction += weight * pixel.direction;
+    ++mean.count;
+  }
+  if (mean.count == 0) return mean;
+  mean.q /= mean.weight;
+  mean.scatter = std::max(0.0, squares / mean.weight - mean.q * mean.q);
+  mean.direction /= mean.weight;
+  return mean;
+}
+
+}  // namespace
+
+std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, double common_sigma,
+                                            const ScanParams& params) {
+  std::sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) { return a.q > b.q; });
+  const std::size_t first = firstAgreeing(pixels, params.min_support_px, params.agree_sigmas);
+  if (first == pixels.size()) return std::nullopt;
+
+  // The first window is the near tail of the surface's noise: move on to the middle of all that agree.
+  double q = pixels[first + static_cast<std::size_t>(params.min_support_px) / 2].q;
+  WeightedMean mean;
+  constexpr int kMaxMoves = 8;
+  for (int i = 0; i < kMaxMoves; ++i) {
+    mean = meanAround(pixels, q, params.agree_sigmas);
+    if (mean.count < params.min_support_px) return std::nullopt;
+    if (std::abs(mean.q - q) < 1e-6) break;
+    q = mean.q;
+  }
+  const double independent = std::max(1.0, mean.count / params.correlated_px);
+  const double one = std::max(mean.count / mean.weight, mean.scatter);
+  const double common = common_sigma / mean.direction.norm();
+
+  ColumnSurface surface;
+  surface.q = mean.q;
+  surface.sigma_q = std::sqrt(one / independent + common * common);
+  surface.direction = mean.direction;
+  const std::size_t caution = firstAgreeing(pixels, params.min_caution_px, params.agree_sigmas);
+  surface.caution_q = std::max(mean.q, pixels[caution].q);
+  // What lies within the surface's own noise is the surface, not something before it.
+  if (surface.caution_q - mean.q <= params.agree_sigmas * std::sqrt(one)) surface.caution_q = mean.q;
+  return surface;
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,103 @@
+#include "cornerstone/stereo/stereo_matcher.h"
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "cornerstone/base/errors.h"
+
+namespace cornerstone {
+namespace {
+
+constexpr int kMaxDisparity_px = 1024;  // far above any camera's use; keeps costs and disparities in 16 bits
+constexpr double kSurfaceUnits = 16;    // of a pixel, for the surface search
+
+void requireOdd(int value, const std::string& name) {
+  if (value % 2 == 0) throw InputError(name + " must be odd");
+}
+
+void requireUsable(const StereoParams& params) {
+  requireWithin(params.max_disparity_px, 1, kMaxDisparity_px, "max_disparity_px");
+  requireWithin(params.window_px, 3, 9, "window_px");  // larger sums would not fit 16 bits
+  requireOdd(params.window_px, "window_px");
+  requireWithin(params.largest_cost_ratio, 0, 1, "largest_cost_ratio");
+  requireWithin(params.left_right_tolerance_px, 0, kMaxDisparity_px, "left_right_tolerance_px");
+  requirePositive(params.largest_sigma_px, "largest_sigma_px");
+  requireWithin(params.subpixel_support_px, 1, 31, "subpixel_support_px");
+  requireOdd(params.subpixel_support_px, "subpixel_support_px");
+  requireWithin(params.smallest_surface_share, 0, 1, "smallest_surface_share");
+  requirePositive(params.surface_step_px, "surface_step_px");
+}
+
+std::string textOf(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
+
+void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
+  const auto require = [&](const cv::Mat1b& image, const std::string& name) {
+    if (image.empty()) throw InputError(name + " image is empty");
+    if (image.size() != rig.image_size_px)
+      throw InputError(name + " image is " + textOf(image.size()) + ", expected " +
+                       textOf(rig.image_size_px));
+  };
+  require(images.reference, "reference");
+  require(images.right, "right");
+  if (!images.top.empty()) require(images.top, "top");
+  if (!images.top.empty() && !rig.top_shift)
+    throw InputError("top image given, but the rig has no third camera");
+}
+
+void reject(Disparity& disparity, int y, int x, Rejection why) {
+  disparity.disparity_px(y, x) = 0;
+  disparity.sigma_px(y, x) = 0;
+  disparity.rejection(y, x) = static_cast<std::uint8_t>(why);
+}
+
+}  // namespace
+
+StereoMatcher::StereoMatcher(const StereoParams& params) : params_(params) { requireUsable(params); }
+
+Disparity StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig) {
+  requireUsable(images, rig);
+  Disparity disparity;
+  disparity.rig = rig;
+  sweep(images, rig);
+  validator_.check(*winners_, sweep_input_, {params_.largest_cost_ratio, params_.left_right_tolerance_px},
+                   disparity.rejection);
+  refine(disparity);
+  dropSmallSurfaces(disparity);
+  return disparity;
+}
+
+void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) {
+  census_.apply(images.reference, reference_census_);
+  census_.apply(images.right, right_census_);
+  sweep_input_.reference_census = &reference_census_;
+  sweep_input_.views.assign(1, {&right_census_, rig.right_shift});
+  if (!images.top.empty()) {
+    census_.apply(images.top, top_census_);
+    sweep_input_.views.push_back({&top_census_, *rig.top_shift});
+  }
+  sweep_input_.max_disparity_px = params_.max_disparity_px;
+  sweep_input_.window_px = params_.window_px;
+  winners_ = &cost_sweep_.run(sweep_input_);
+}
+
+void StereoMatcher::refine(Disparity& disparity) {
+  refiner_.refine({winners_, &disparity.rejection}, {params_.subpixel_support_px}, disparity.disparity_px,
+                  disparity.sigma_px);
+  const auto largest_sigma = static_cast<float>(params_.largest_sigma_px);
+  for (int y = 0; y < disparity.rejection.rows; ++y)
+    for (int x = 0; x < disparity.rejection.cols; ++x)
+      if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, y, x, Rejection::kTexture);
+}
+
+void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
+  disparity.disparity_px.convertTo(surfaces_, CV_16S, kSurfaceUnits);
+  const double smallest_px = params_.smallest_surface_share * static_cast<double>(surfaces_.total());
+  cv::filterSpeckles(surfaces_, 0, static_cast<int>(smallest_px), params_.surface_step_px * kSurfaceUnits,
+                     surface_buffer_);
+  for (int y = 0; y < surfaces_.rows; ++y)
+    for (int x = 0; x < surfaces_.cols; ++x)
+      if (surfaces_(y, x) == 0 && disparity.disparity_px(y, x) > 0)
+        reject(disparity, y, x, Rejection::kSurface);
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,16 @@
+#include "cornerstone/stereo/stereo_matcher.h"
+
+namespace cornerstone {
+
+void describe(ParamVisitor& visitor, StereoParams& params) {
+  visitor.field("max_disparity_px", params.max_disparity_px);
+  visitor.field("window_px", params.window_px);
+  visitor.field("largest_cost_ratio", params.largest_cost_ratio);
+  visitor.field("left_right_tolerance_px", params.left_right_tolerance_px);
+  visitor.field("largest_sigma_px", params.largest_sigma_px);
+  visitor.field("subpixel_support_px", params.subpixel_support_px);
+  visitor.field("smallest_surface_share", params.smallest_surface_share);
+  visitor.field("surface_step_px", params.surface_step_px);
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,69 @@
+// The pose of one saved map in another, or a refusal with its reason.
+#include <cmath>
+
+#include "cornerstone/mapping/map_files.h"
+#include "cornerstone/registration/register_maps.h"
+#include "tools/drawing.h"
+#include "tools/program.h"
+#include "tools/stopwatch.h"
+
+namespace {
+
+using namespace cornerstone;
+
+std::optional<Pose2> priorOf(const Arguments& arguments) {
+  if (!arguments.has("prior")) return std::nullopt;
+  const std::vector<double> numbers = numbersOf(arguments.text("prior"), 3, "--prior X,Y,YAW_DEG");
+  return Pose2{numbers[0], numbers[1], wrapAngle(numbers[2] * M_PI / 180)};
+}
+
+void addAnswer(const Registration& answer, nlohmann::json& result) {
+  nlohmann::json covariance = nlohmann::json::array();
+  for (int i = 0; i < 9; ++i) covariance.push_back(answer.covariance(i / 3, i % 3));
+  result.update({{"x_m", answer.reference_from_current.x_m},
+                 {"y_m", answer.reference_from_current.y_m},
+                 {"yaw_rad", answer.reference_from_current.yaw_rad},
+                 {"covariance", covariance},
+                 {"matched", answer.matches.size()},
+                 {"rms_m", answer.rms_m},
+                 {"agreement", answer.agreement},
+                 {"overlap", answer.overlap},
+                 {"second_best", answer.second_best}});
+}
+
+Outcome align(int argc, const char* const* argv) {
+  const Arguments arguments(argc, argv,
+                            "align_maps REF.yaml CUR.yaml [--prior X,Y,YAW_DEG] [--overlay OUT.png]", 2,
+                            {"prior", "overlay"});
+  const std::optional<Pose2> prior = priorOf(arguments);
+  const GridMap reference = loadMap(arguments.positional(0)), current = loadMap(arguments.positional(1));
+  Stopwatch watch;
+  const Landmarks reference_landmarks = detectLandmarks(reference, {}),
+                  current_landmarks = detectLandmarks(current, {});
+  const double detect_ms = watch.lap_ms();
+  std::string refusal;
+  const auto answer =
+      registerMaps({reference, reference_landmarks}, {current, current_landmarks}, prior, {}, &refusal);
+  const double register_ms = watch.lap_ms();
+
+  nlohmann::json result{
+      {"registered", answer.has_value()},
+      {"elapsed_ms", {{"detect", detect_ms}, {"register", register_ms}, {"total", detect_ms + register_ms}}}};
+  if (answer)
+    addAnswer(*answer, result);
+  else
+    result["reason"] = refusal;
+  if (arguments.has("overlay")) {
+    const Overlay overlay{reference, reference_landmarks, current, current_landmarks,
+                          answer ? answer->matches : std::vector<std::pair<int, int>>{}};
+    writePicture(pictureOfOverlay(overlay, answer ? answer->reference_from_current : prior.value_or(Pose2{})),
+                 arguments.text("overlay"));
+  }
+  return {answer ? kExitDone : kExitNoAnswer, result};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return cornerstone::runProgram("align_maps", [&] { return align(argc, argv); });
+}

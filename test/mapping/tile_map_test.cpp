@@ -1,0 +1,43 @@
+#include "cornerstone/mapping/tile_map.h"
+
+#include <gtest/gtest.h>
+
+#include "cornerstone/base/errors.h"
+
+namespace cornerstone {
+namespace {
+
+cv::Mat1f tileOf(float value) { return cv::Mat1f(4, 4, value); }
+
+TEST(TileMap, AssemblesTilesOnBothSidesOfTheOrigin) {
+  TileMap tiles(0.5, 4);
+  EXPECT_TRUE(tiles.assemble().occupied.empty());
+  tiles.put(-4, 0, tileOf(0.2f));
+  tiles.put(4, 4, tileOf(0.9f));
+  const GridMap map = tiles.assemble();
+  EXPECT_EQ(map.geometry.cols, 12);
+  EXPECT_EQ(map.geometry.rows, 8);
+  EXPECT_NEAR(map.geometry.origin_x_m, -2, 1e-12);
+  EXPECT_NEAR(map.geometry.origin_y_m, 0, 1e-12);
+  EXPECT_NEAR(map.occupied(0, 3), 0.2f, 1e-6f);
+  EXPECT_NEAR(map.occupied(7, 11), 0.9f, 1e-6f);
+  EXPECT_EQ(map.occupied(0, 4), kUnseen);
+}
+
+TEST(TileMap, ANewerTileReplacesTheOlder) {
+  TileMap tiles(0.5, 4);
+  tiles.put(0, 0, tileOf(0.2f));
+  tiles.put(0, 0, tileOf(0.7f));
+  EXPECT_NEAR(tiles.assemble().occupied(2, 2), 0.7f, 1e-6f);
+}
+
+TEST(TileMap, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(TileMap(0, 4), InputError);
+  TileMap tiles(0.5, 4);
+  EXPECT_THROW(tiles.put(1, 0, tileOf(0.2f)), InputError);
+  EXPECT_THROW(tiles.put(0, 0, cv::Mat1f(3, 4, 0.2f)), InputError);
+  EXPECT_TRUE(tiles.assemble().occupied.empty());
+}
+
+}  // namespace
+}  // namespace cornerstone

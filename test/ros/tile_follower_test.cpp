@@ -1,0 +1,57 @@
+#include "cornerstone/ros/tile_follower.h"
+
+#include <gtest/gtest.h>
+
+#include "cornerstone/base/errors.h"
+#include "cornerstone/ros/grid_messages.h"
+
+namespace cornerstone {
+namespace {
+
+MapTiles tilesAt(int col, float value, std::uint32_t epoch, std::uint32_t version) {
+  MapTiles message;
+  message.resolution = 0.1;
+  message.map_epoch = epoch;
+  message.version = version;
+  message.tiles = {toTile(cv::Mat1f(4, 4, value), col, 0)};
+  return message;
+}
+
+TEST(TileFollower, AddsTilesOfOneEpochAndDropsThoseOfAnOlderOne) {
+  TileFollower follower;
+  EXPECT_TRUE(follower.empty());
+  EXPECT_TRUE(follower.map().occupied.empty());
+  EXPECT_FALSE(follower.take(tilesAt(0, 0.2f, 1, 1)));
+  EXPECT_FALSE(follower.take(tilesAt(4, 0.2f, 1, 2)));
+  EXPECT_EQ(follower.map().geometry.cols, 8);
+  EXPECT_TRUE(follower.take(tilesAt(0, 0.2f, 2, 1))) << "another epoch";
+  EXPECT_EQ(follower.map().geometry.cols, 4);
+  EXPECT_EQ(follower.epoch(), 2u);
+}
+
+TEST(TileFollower, ACompleteMessageReplacesAll) {
+  TileFollower follower;
+  follower.take(tilesAt(4, 0.2f, 1, 1));
+  MapTiles complete = tilesAt(0, 0.2f, 1, 2);
+  complete.complete = true;
+  EXPECT_FALSE(follower.take(complete));
+  EXPECT_EQ(follower.map().geometry.cols, 4);
+  EXPECT_NEAR(follower.map().geometry.origin_x_m, 0, 1e-12);
+}
+
+TEST(TileFollower, AMessageAtFaultChangesNothing) {
+  TileFollower follower;
+  follower.take(tilesAt(0, 0.2f, 1, 1));
+  MapTiles broken = tilesAt(4, 0.2f, 1, 2);
+  broken.tiles.front().png.clear();
+  EXPECT_THROW(follower.take(broken), InputError);
+  MapTiles coarser = tilesAt(4, 0.2f, 1, 2);
+  coarser.resolution = 0.2;
+  EXPECT_THROW(follower.take(coarser), InputError);
+  EXPECT_THROW(follower.take(MapTiles{}), InputError);
+  EXPECT_EQ(follower.version(), 1u);
+  EXPECT_EQ(follower.map().geometry.cols, 4);
+}
+
+}  // namespace
+}  // namespace cornerstone

@@ -1,0 +1,155 @@
+#include "cornerstone/stereo/stereo_matcher.h"
+
+#include <gtest/gtest.h>
+
+#include "cornerstone/base/errors.h"
+#include "stereo/synthetic_views.h"
+
+namespace cornerstone {
+namespace {
+
+const cv::Size kSize(160, 120);
+
+double shareOf(const Disparity& disparity, Rejection why) {
+  return cv::countNonZero(disparity.rejection == static_cast<int>(why)) /
+         static_cast<double>(disparity.rejection.total());
+}
+
+TEST(StereoMatcher, FindsAKnownShiftWithoutABlindBand) {
+  cv::RNG random(1);
+  const Texture texture(kSize, 1, 30, random);
+  const Disparity disparity = matched(viewsOf(texture, {7, 0}, {2, 1}, random));
+  // The right camera does not see columns 0..6, the top camera not rows 113..119: only 7 x 7 px are seen by
+  // neither.
+  EXPECT_GT(shareOf(disparity, Rejection::kNone), 0.99);
+  EXPECT_NEAR(disparity.disparity_px(50, 2), 7, 0.25);
+  EXPECT_NEAR(disparity.disparity_px(117, 80), 7, 0.25);
+  EXPECT_NEAR(disparity.disparity_px(60, 80), 7, 0.25);
+}
+
+TEST(StereoMatcher, NoAnswerIsZeroEverywhere) {
+  cv::RNG random(2);
+  const Disparity disparity = matched(viewsOf(Texture(kSize, 2, 8, random), {4, 0.05}, {4, 1}, random));
+  int answers = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const bool answered = disparity.rejection(y, x) == 0;
+      answers += answered;
+      ASSERT_EQ(answered, disparity.disparity_px(y, x) > 0);
+      ASSERT_EQ(answered, disparity.sigma_px(y, x) > 0);
+    }
+  }
+  EXPECT_GT(answers, 0);
+  EXPECT_LT(answers, kSize.area());
+}
+
+TEST(StereoMatcher, GainDifferenceChangesLittle) {
+  cv::RNG random(3);
+  const Texture texture(kSize, 1, 30, random);
+  const Disparity disparity = matched(viewsOf(texture, {5.5, 0}, {2, 0.85}, random));
+  EXPECT_GT(shareOf(disparity, Rejection::kNone), 0.98);
+  EXPECT_NEAR(cv::mean(disparity.disparity_px, disparity.rejection == 0)[0], 5.5, 0.02);
+}
+
+TEST(StereoMatcher, SurfaceHiddenFromOneCameraIsRefusedOrRight) {
+  cv::RNG random(4);
+  const Texture behind(kSize, 1, 30, random), front(kSize, 1, 30, random);
+  StereoImages images = viewsOf(behind, {3, 0}, {2, 1}, random);
+  const StereoImages near = viewsOf(front, {13, 0}, {2, 1}, random);
+  const cv::Rect box(60, 40, 40,
+                     40);  // in the reference image; it hides columns 50..59 from the right camera
+  near.reference(box).copyTo(images.reference(box));
+  near.right(box - cv::Point(13, 0)).copyTo(images.right(box - cv::Point(13, 0)));
+  near.top(box + cv::Point(0, 13)).copyTo(images.top(box + cv::Point(0, 13)));
+  const Disparity disparity = matched(images);
+  int wrong = 0, answered = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      if (disparity.rejection(y, x) != 0) continue;
+      ++answered;
+      wrong += std::abs(disparity.disparity_px(y, x) - (box.contains({x, y}) ? 13 : 3)) > 1;
+    }
+  }
+  EXPECT_GT(answered, 0.85 * kSize.area());
+  EXPECT_LT(wrong, 0.01 * kSize.area());
+  EXPECT_NEAR(disparity.disparity_px(60, 80), 13, 0.3);
+}
+
+TEST(StereoMatcher, BareWallIsRefused) {
+  cv::RNG random(5);
+  const cv::Mat1f wall(kSize, 130.F);
+  const StereoImages images{photographed(wall, 2, 1, random), photographed(wall, 2, 1, random),
+                            photographed(wall, 2, 1, random)};
+  const Disparity disparity = matched(images);
+  EXPECT_EQ(shareOf(disparity, Rejection::kNone), 0);
+  EXPECT_EQ(shareOf(matched({cv::Mat1b(kSize, 90), cv::Mat1b(kSize, 90), {}}), Rejection::kNone), 0);
+}
+
+TEST(StereoMatcher, RepetitivePatternIsRefusedForItsUniqueness) {
+  cv::RNG random(9);
+  cv::Mat1f stripes(kSize), shifted(kSize);  // period 8 px: disparities 3, 11, 19, 27 match alike
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      stripes(y, x) = static_cast<float>(128 + 60 * std::sin(2 * M_PI * x / 8));
+      shifted(y, x) = static_cast<float>(128 + 60 * std::sin(2 * M_PI * (x + 3) / 8));
+    }
+  }
+  const Disparity disparity =
+      matched({photographed(stripes, 2, 1, random), photographed(shifted, 2, 1, random), {}});
+  const cv::Mat middle =
+      disparity.rejection(cv::Rect(40, 10, 100, 100)) == static_cast<int>(Rejection::kUniqueness);
+  EXPECT_GT(cv::countNonZero(middle), 0.9 * 100 * 100);
+}
+
+TEST(StereoMatcher, TopCameraSeesHorizontalStripes) {
+  cv::RNG random(6);
+  cv::Mat1f levels(kSize.height + 20, 1), reference(kSize), top(kSize);
+  random.fill(levels, cv::RNG::UNIFORM, 60, 190);
+  cv::GaussianBlur(levels, levels, {1, 5}, 1);
+  for (int y = 0; y < kSize.height; ++y) {
+    reference.row(y).setTo(levels(y + 10, 0));
+    top.row(y).setTo(levels(y + 10 - 4, 0));  // disparity 4: seen 4 rows lower
+  }
+  StereoImages images{photographed(reference, 1, 1, random), photographed(reference, 1, 1, random),
+                      photographed(top, 1, 1, random)};
+  const Disparity three = matched(images);
+  EXPECT_GT(shareOf(three, Rejection::kNone), 0.9);
+  EXPECT_NEAR(three.disparity_px(60, 80), 4, 0.3);
+  images.top.release();
+  EXPECT_LT(shareOf(matched(images), Rejection::kNone), 0.02);
+}
+
+TEST(StereoMatcher, NearerThanTheRangeIsRefused) {
+  cv::RNG random(7);
+  StereoParams params;
+  params.max_disparity_px = 8;
+  const Disparity disparity =
+      matched(viewsOf(Texture(kSize, 1, 30, random), {9.4, 0}, {2, 1}, random), params);
+  EXPECT_LT(shareOf(disparity, Rejection::kNone), 0.01);
+  EXPECT_GT(shareOf(disparity, Rejection::kRange), 0.5);
+}
+
+TEST(StereoMatcher, RefusesBadImagesAndParameters) {
+  const cv::Mat1b image(kSize, 0);
+  EXPECT_THROW(matched({image, cv::Mat1b(), {}}), InputError);
+  EXPECT_THROW(matched({image, cv::Mat1b(60, 80), {}}), InputError);
+  StereoMatcher matcher{StereoParams()};
+  TrinocularRig two_cameras;
+  two_cameras.image_size_px = kSize;
+  EXPECT_THROW(matcher.match({image, image, image}, two_cameras), InputError);
+  StereoParams even;
+  even.window_px = 8;
+  EXPECT_THROW(StereoMatcher{even}, InputError);
+}
+
+TEST(StereoMatcher, AnyImageSizeWorks) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(5, 3), cv::Size(17, 33), cv::Size(161, 119)}) {
+    cv::Mat1b image(size);
+    cv::RNG(8).fill(image, cv::RNG::UNIFORM, 0, 255);
+    const Disparity disparity = matched({image, image, image});
+    EXPECT_EQ(disparity.disparity_px.size(), size);
+  }
+}
+
+}  // namespace
+}  // namespace cornerstone
