@@ -111,7 +111,8 @@ std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvide
       // Shifts beyond the reference map's size are negative ones, wrapped round.
       const auto unwrapped = [&](int shift) {
         const auto squares = static_cast<float>(shift);
-        return squares * square_m > there_size_m + 2 * square_m ? squares - static_cast<float>(size) : squares;
+        return squares * square_m > there_size_m + 2 * square_m ? squares - static_cast<float>(size)
+                                                                : squares;
       };
       const Eigen::Vector2f squares(unwrapped(peak.x), unwrapped(peak.y));
       const Eigen::Vector2f shift = squares * square_m + there_bounds.low - low;
