@@ -21,17 +21,11 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.group("fit", [&] { describe(visitor, params.fit); });
   visitor.group("odometry", [&] { describe(visitor, params.odometry); });
   visitor.field("fit_scans", params.fit_scans);
-  visitor.field("new_look_m", params.new_look_m);
-  visitor.degrees("new_look_deg", params.new_look_rad);
-  visitor.field("min_new_share", params.min_new_share);
   visitor.field("max_contradictions", params.max_contradictions);
 }
 
 Mapper::Mapper(const MapperParams& params) : params_(params), grid_(params.grid), filter_(params.odometry) {
   requireValid(params.fit);
-  requirePositive(params.new_look_m, "new_look_m");
-  requirePositive(params.new_look_rad, "new_look_deg");
-  requireWithin(params.min_new_share, 0.001, 1, "min_new_share");
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
 
@@ -47,19 +41,28 @@ void Mapper::predict(const Pose2& odom_from_base) {
   last_odom_ = odom_from_base;
 }
 
-double Mapper::newShare() const {
-  if (!last_inserted_) return 1;
+LookMotion Mapper::motion() const {
+  if (!last_inserted_) return kFirstLook;
   const Pose2 moved = last_inserted_->inverse() * filter_.pose().map_from_base;
-  const double share =
-      moved.translation().norm() / params_.new_look_m + std::abs(moved.yaw_rad) / params_.new_look_rad;
-  return std::clamp(share, params_.min_new_share, 1.0);
+  return {moved.translation().norm(), std::abs(moved.yaw_rad)};
+}
+
+// Of the whole look: at the distance of its middle beam.
+double Mapper::newShare(const RangeScan& scan) const {
+  std::vector<double> ranges_m;
+  for (const Beam& beam : scan.beams)
+    if (beam.hit) ranges_m.push_back(beam.range_m);
+  if (ranges_m.empty()) return 1;
+  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
+  std::nth_element(ranges_m.begin(), middle, ranges_m.end());
+  return grid_.newShare(*middle, motion());
 }
 
 MapperUpdate Mapper::update(const RangeScan& scan, const Pose2& odom_from_base) {
   if (!odom_from_base.isFinite()) throw InputError("odometry: odom_from_base is not finite");
   predict(odom_from_base);
   ScanFit fit;
-  if (params_.fit_scans) fit = fitScan(scan, grid_, filter_.pose(), params_.fit);
+  if (params_.fit_scans) fit = fitScan(scan, grid_, {filter_.pose(), newShare(scan)}, params_.fit);
   if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
   contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
   const Pose2 map_from_base = filter_.pose().map_from_base;
@@ -70,7 +73,7 @@ MapperUpdate Mapper::update(const RangeScan& scan, const Pose2& odom_from_base) 
   const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
   if (insert) {
-    grid_.insert(scan, map_from_base, newShare());
+    grid_.insert(scan, map_from_base, motion());
     last_inserted_ = map_from_base;
   }
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};

@@ -49,6 +49,9 @@ void describe(ParamVisitor& visitor, GridParams& params) {
   visitor.field("occupied_step", params.occupied_step);
   visitor.field("min_log_odds", params.min_log_odds);
   visitor.field("max_log_odds", params.max_log_odds);
+  visitor.field("new_look_ratio", params.new_look_ratio);
+  visitor.degrees("new_look_deg", params.new_look_rad);
+  visitor.field("min_new_share", params.min_new_share);
 }
 
 OccupancyGrid::OccupancyGrid(const GridParams& params) : params_(params), scale_(0.03) {
@@ -60,20 +63,28 @@ OccupancyGrid::OccupancyGrid(const GridParams& params) : params_(params), scale_
   requireWithin(params.occupied_step, 0.1, 7, "occupied_step");
   requireWithin(params.min_log_odds, -7.5, -1, "min_log_odds");
   requireWithin(params.max_log_odds, 1, 7.5, "max_log_odds");
+  requireWithin(params.new_look_ratio, 1e-4, 10, "new_look_ratio");
+  requireWithin(params.new_look_rad, 1e-4, 10, "new_look_deg");
+  requireWithin(params.min_new_share, 0.001, 1, "min_new_share");
   scale_ = EvidenceScale(params.prior_occupied);
 }
 
-void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, double new_share) {
+void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, const LookMotion& motion) {
   if (!map_from_base.isFinite() || !scan.base_from_sensor.isFinite())
     throw InputError("pose of the range scan is not finite");
   if (!finite(scan))
     throw InputError("range scan: a beam is not finite or its interval is not around its range");
   if (std::none_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; })) return;
   ScanWedge wedge(scan, map_from_base * scan.base_from_sensor, *this);
-  wedge.apply(std::clamp(new_share, 0.0, 1.0));
+  wedge.apply(motion);
   ++version_;
   writeWindow(wedge.window());
   for (const SurfaceHit& hit : wedge.hits()) addHit(hit);
+}
+
+double OccupancyGrid::newShare(double range_m, const LookMotion& motion) const {
+  const double whole_m = params_.new_look_ratio * std::max(range_m, params_.resolution_m);
+  return std::clamp(motion.moved_m / whole_m + motion.turned_rad / params_.new_look_rad, params_.min_new_share, 1.0);
 }
 
 void OccupancyGrid::clear() {

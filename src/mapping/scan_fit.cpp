@@ -84,9 +84,9 @@ Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const Pos
   return {pose[0], pose[1], wrapAngle(pose[2])};
 }
 
-Eigen::Matrix3d covarianceAt(const std::vector<LineMatch>& matches, const Pose2& pose,
-                             const PoseEstimate& prior, double correlated, double loss_sigmas) {
-  Eigen::Matrix3d information = prior.covariance.inverse();
+Eigen::Matrix3d informationAt(const std::vector<LineMatch>& matches, const Pose2& pose, double correlated,
+                              double loss_sigmas) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const LineMatch& match : matches) {
     const Eigen::Vector2d arm_m = pose.rotation() * match.point_in_base_m;
     const Eigen::Vector3d row(match.normal.x(), match.normal.y(),
@@ -94,8 +94,28 @@ Eigen::Matrix3d covarianceAt(const std::vector<LineMatch>& matches, const Pose2&
     const double loss = 1 / (1 + std::pow(whitened(match, pose) / loss_sigmas, 2));  // of Cauchy
     information += loss / (match.sigma_m * match.sigma_m * correlated) * row * row.transpose();
   }
-  const Eigen::Matrix3d covariance = information.inverse();
-  return (covariance + covariance.transpose()) / 2;
+  return information;
+}
+
+// The solution takes the scan at its word, L for its information. What one look cannot know (F) and what it repeats
+// (new share n) leave it L' = n (I + L F)^-1 L, which holds where L has no rank too. With P the prior's information, d
+// the solution's step from the prior: L (scan - prior) = (L + P) d, and the step that L' allows is
+//   d' = (L' + P)^-1 n (I + L F)^-1 (L + P) d.
+PoseEstimate tempered(const Pose2& solution, const Eigen::Matrix3d& information, const ScanFitStart& start,
+                      const ScanFitParams& params) {
+  const Eigen::Matrix3d floor = Eigen::Vector3d(params.look_sigma_m, params.look_sigma_m, params.look_sigma_rad)
+                                    .cwiseAbs2()
+                                    .asDiagonal();
+  const Eigen::Matrix3d prior = start.prior.covariance.inverse();
+  const Eigen::Matrix3d temper =
+      start.new_share * (Eigen::Matrix3d::Identity() + information * floor).inverse();
+  const Pose2& from = start.prior.map_from_base;
+  const Eigen::Vector3d step(solution.x_m - from.x_m, solution.y_m - from.y_m,
+                             wrapAngle(solution.yaw_rad - from.yaw_rad));
+  const Eigen::Matrix3d covariance = (temper * information + prior).inverse();
+  const Eigen::Vector3d allowed = covariance * temper * (information + prior) * step;
+  return {{from.x_m + allowed.x(), from.y_m + allowed.y(), wrapAngle(from.yaw_rad + allowed.z())},
+          (covariance + covariance.transpose()) / 2};
 }
 
 double agreeingShare(const std::vector<LineMatch>& matches, const Pose2& pose) {
@@ -114,6 +134,8 @@ void describe(ParamVisitor& visitor, ScanFitParams& params) {
   visitor.field("min_agreeing_share", params.min_agreeing_share);
   visitor.field("min_matches", params.min_matches);
   visitor.field("max_rounds", params.max_rounds);
+  visitor.field("look_sigma_m", params.look_sigma_m);
+  visitor.degrees("look_sigma_deg", params.look_sigma_rad);
 }
 
 void requireValid(const ScanFitParams& params) {
@@ -124,11 +146,14 @@ void requireValid(const ScanFitParams& params) {
   requireWithin(params.min_agreeing_share, 0, 1, "min_agreeing_share");
   requireWithin(params.min_matches, 3, 10000, "min_matches");
   requireWithin(params.max_rounds, 1, 100, "max_rounds");
+  requireWithin(params.look_sigma_m, 0, 1, "look_sigma_m");
+  requireWithin(params.look_sigma_rad, 0, 1, "look_sigma_deg");
 }
 
-ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const PoseEstimate& prior,
+ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitStart& start,
                 const ScanFitParams& params) {
   ScanFit fit;
+  const PoseEstimate& prior = start.prior;
   fit.pose = prior;
   const std::vector<BeamEnd> ends = endsOf(scan, grid.params().max_range_m);
   if (ends.empty() || grid.empty()) return fit;
@@ -149,7 +174,7 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const PoseEsti
   fit.agreeing_share = agreeingShare(matches, pose);
   fit.state = fit.agreeing_share < params.min_agreeing_share ? FitState::kContradicts : FitState::kFitted;
   if (fit.state == FitState::kFitted)
-    fit.pose = {pose, covarianceAt(matches, pose, prior, correlated, params.loss_sigmas)};
+    fit.pose = tempered(pose, informationAt(matches, pose, correlated, params.loss_sigmas), start, params);
   return fit;
 }
 

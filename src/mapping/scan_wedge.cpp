@@ -71,13 +71,13 @@ void ScanWedge::makeBearingTable(const RangeScan& scan) {
   }
 }
 
-void ScanWedge::apply(double new_share) {
+void ScanWedge::apply(const LookMotion& motion) {
   const Eigen::Vector2d sensor_m = map_from_sensor_.translation();
   for (int row = 0; row < window_.geometry.rows; ++row)
     for (int col = 0; col < window_.geometry.cols; ++col) {
       const Eigen::Vector2d from_sensor_m = window_.geometry.centreOf({col, row}) - sensor_m;
       if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_)
-        updateCell({col, row}, from_sensor_m, new_share);
+        updateCell({col, row}, from_sensor_m, motion);
     }
 }
 
@@ -109,7 +109,7 @@ ScanWedge::Look ScanWedge::lookAt(double range_m, double bearing_rad, double occ
   return look;
 }
 
-void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, double new_share) {
+void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, const LookMotion& motion) {
   const double bearing_rad =
       wrapAngle(std::atan2(from_sensor_m.y(), from_sensor_m.x()) - map_from_sensor_.yaw_rad);
   const double range_m = from_sensor_m.norm();
@@ -118,6 +118,7 @@ void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, doub
   const Look look = lookAt(range_m, bearing_rad, occupied);
   if (look.beams == 0) return;
   const double change = logit(look.posterior / look.beams) - logit(occupied);
+  const double new_share = grid_.newShare(range_m, motion);
   evidence = updated(evidence, change, new_share);
   if (look.cause < kMinHitCause) return;
   const double sigma_m = look.beam->sigma_m();

@@ -13,7 +13,7 @@ class ScanWedge {
   // The window is changed in place by apply(); both must outlive the wedge.
   ScanWedge(const RangeScan& scan, const Pose2& map_from_sensor, const OccupancyGrid& grid);
   const CellWindow& window() const { return window_; }
-  void apply(double new_share);
+  void apply(const LookMotion& motion);
   const std::vector<SurfaceHit>& hits() const { return hits_; }
 
  private:
@@ -25,7 +25,7 @@ class ScanWedge {
   };
   void makeBearingTable(const RangeScan& scan);
   Look lookAt(double range_m, double bearing_rad, double occupied) const;
-  void updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, double new_share);
+  void updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, const LookMotion& motion);
   EvidenceCell updated(EvidenceCell cell, double change, double new_share) const;
 
   const OccupancyGrid& grid_;

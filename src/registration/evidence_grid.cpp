@@ -99,6 +99,20 @@ std::vector<Eigen::Vector2f> EvidenceGrid::knownSquares() const {
   return squares;
 }
 
+std::vector<Opinion> EvidenceGrid::opinions() const {
+  std::vector<Opinion> opinions;
+  for (int r = 0; r < rows_; ++r) {
+    for (int c = 0; c < cols_; ++c) {
+      const std::int8_t* cell = &table_[static_cast<std::size_t>((r * cols_ + c) * kEvidenceDirections)];
+      const int best = *std::max_element(cell, cell + kEvidenceDirections);
+      if (best == 0) continue;
+      const Eigen::Vector2f middle(static_cast<float>(c) + 0.5f, static_cast<float>(r) + 0.5f);
+      opinions.push_back({origin_m_ + middle / per_cell_, best});
+    }
+  }
+  return opinions;
+}
+
 std::vector<EdgePoint> thinEdges(const std::vector<EdgePoint>& edges, double cell_m) {
   struct Keyed {
     int row, col, direction;

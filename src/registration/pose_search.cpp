@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cornerstone/registration/edge_refinement.h"
-
 namespace cornerstone {
 namespace {
 
-constexpr std::size_t kCoarseSamples = 200;  // of each map: scores scatter by a few per cent
+// Edges of each map that judge a pose, and how many poses go on to the next judgement.
+constexpr std::size_t kGlanceSamples = 50;
+constexpr std::size_t kGlanceKept = 400;
+constexpr std::size_t kCoarseSamples = 200;  // scores scatter by a few per cent
+constexpr std::size_t kCoarseKept = 40;
+constexpr std::size_t kClimbed = 12;
+constexpr std::size_t kGlanceFineSamples = 150;
+constexpr std::size_t kFineClimbSamples = 300;
 constexpr std::size_t kFineSamples = 1000;
-constexpr std::size_t kFollowed = 40;  // proposals that are refined roughly
-constexpr std::size_t kKept = 8;       // different poses in the end
+constexpr std::size_t kKept = 8;  // different poses in the end
+constexpr double kSame_m = 0.3;   // poses this near climb to the same top
+constexpr double kSame_rad = 3 * M_PI / 180;
 
 void sortBestFirst(std::vector<Hypothesis>& hypotheses) {
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
@@ -91,27 +97,39 @@ Hypothesis judgePose(const MapEvidence& reference, const MapEvidence& current, c
 
 std::vector<Hypothesis> searchPoses(const MapEvidence& reference, const MapEvidence& current,
                                     const std::vector<Pose2>& proposals, const RegistrationParams& params) {
-  std::vector<Hypothesis> coarse;
-  coarse.reserve(proposals.size());
-  for (const Pose2& pose : proposals)
-    coarse.push_back(
-        judgePose(reference, current, pose, ScoreLevel::kCoarse, kCoarseSamples, params.contradiction));
-  sortBestFirst(coarse);
-  coarse = bestDifferent(coarse, current.middle_m, 0.5 * params.different_m, 0.5 * params.different_rad,
-                         kFollowed);
+  const auto judge = [&](const Pose2& pose, ScoreLevel level, std::size_t samples) {
+    return judgePose(reference, current, pose, level, samples, params.contradiction);
+  };
+  const Eigen::Vector2d& middle = current.middle_m;
+  std::vector<Hypothesis> poses;
+  poses.reserve(proposals.size());
+  for (const Pose2& pose : proposals) poses.push_back(judge(pose, ScoreLevel::kCoarse, kGlanceSamples));
+  sortBestFirst(poses);
+  poses.resize(std::min(poses.size(), kGlanceKept));
+  for (Hypothesis& h : poses) h = judge(h.reference_from_current, ScoreLevel::kCoarse, kCoarseSamples);
+  sortBestFirst(poses);
+  poses = bestDifferent(poses, middle, 0.5 * params.different_m, 0.5 * params.different_rad, kCoarseKept);
 
-  std::vector<Hypothesis> fine;
-  for (const Hypothesis& h : coarse) {
-    Climb climb{reference, current, ScoreLevel::kCoarse, kCoarseSamples, params.contradiction};
-    const Hypothesis higher = climb.from(h, {0.4, 4 * M_PI / 180, 3});
-    climb.level = ScoreLevel::kFine;
-    climb.samples = kFineSamples;
-    fine.push_back(climb.from(judgePose(reference, current, higher.reference_from_current, ScoreLevel::kFine,
-                                        kFineSamples, params.contradiction),
-                              {0.2, 1 * M_PI / 180, 3}));
+  Climb climb{reference, current, ScoreLevel::kCoarse, kCoarseSamples, params.contradiction};
+  for (Hypothesis& h : poses) h = climb.from(h, {0.4, 4 * M_PI / 180, 3});
+  poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kCoarseKept);
+
+  climb.level = ScoreLevel::kFine;
+  climb.samples = kGlanceFineSamples;
+  for (Hypothesis& h : poses)
+    h = climb.from(judge(h.reference_from_current, ScoreLevel::kFine, climb.samples),
+                   {0.2, 1 * M_PI / 180, 2});
+  sortBestFirst(poses);
+  poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kClimbed);
+
+  climb.samples = kFineClimbSamples;
+  for (Hypothesis& h : poses) {
+    const Hypothesis start = judge(h.reference_from_current, ScoreLevel::kFine, climb.samples);
+    h = judge(climb.from(start, {0.1, 0.5 * M_PI / 180, 2}).reference_from_current, ScoreLevel::kFine,
+              kFineSamples);
   }
-  sortBestFirst(fine);
-  return bestDifferent(fine, current.middle_m, params.different_m, params.different_rad, kKept);
+  sortBestFirst(poses);
+  return bestDifferent(poses, middle, params.different_m, params.different_rad, kKept);
 }
 
 }  // namespace cornerstone

@@ -110,8 +110,7 @@ std::vector<double> DirectionMatch::peaks(std::size_t count) const {
 }
 
 std::vector<Pose2> proposeFromCorners(const std::vector<CornerLandmark>& reference,
-                                      const std::vector<CornerLandmark>& current,
-                                      const DirectionMatch& directions) {
+                                      const std::vector<CornerLandmark>& current, const DirectionMatch& directions) {
   std::vector<Pose2> poses;
   for (const CornerLandmark& there : reference) {
     for (const CornerLandmark& here : current) {

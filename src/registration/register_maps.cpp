@@ -8,6 +8,7 @@
 #include "cornerstone/registration/edge_refinement.h"
 #include "cornerstone/registration/pose_search.h"
 #include "cornerstone/registration/proposals.h"
+#include "cornerstone/registration/wall_search.h"
 
 namespace cornerstone {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr PairingLimits kMatched{
     0.3, 0.2};  // corners this near under the answer are the same: several sigma of both
 constexpr double kMergeSquare_m = 0.25;  // proposals closer than the coarse reach score alike
+constexpr std::size_t kMaxYaws = 6;      // walls at right angles allow four
 constexpr double kMergeAngle_rad = 3 * M_PI / 180;
 constexpr double kPriorStep_m = 0.4;  // of the poses tried around a prior: inside the climb's reach
 constexpr double kPriorStep_rad = 4 * M_PI / 180;
@@ -67,7 +69,10 @@ std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, c
 std::vector<Pose2> propose(const MapView& reference, const MapView& current, const MapEvidence& there,
                            const MapEvidence& here) {
   const DirectionMatch directions(there.edges, here.edges);
-  const auto poses = proposeFromCorners(reference.landmarks.corners, current.landmarks.corners, directions);
+  std::vector<Pose2> poses =
+      proposeFromCorners(reference.landmarks.corners, current.landmarks.corners, directions);
+  const std::vector<Pose2> by_walls = proposeFromWalls(there, here, directions.peaks(kMaxYaws), {});
+  poses.insert(poses.end(), by_walls.begin(), by_walls.end());
   return mergeProposals(poses, here.middle_m, kMergeSquare_m, kMergeAngle_rad);
 }
 

@@ -59,9 +59,9 @@ void costPart(const std::uint8_t* reference, const std::uint8_t* a, const std::u
 }  // namespace
 
 SeenRow seenRow(const SecondaryView& view, int row, int disparity_px) {
-  const auto dx = static_cast<int>(std::lround(view.shift.x * disparity_px));
-  const auto dy = static_cast<int>(std::lround(view.shift.y * disparity_px));
-  const cv::Mat1b& census = *view.census;
+  const cv::Point offset = view.offsetAt(disparity_px);
+  const int dx = offset.x, dy = offset.y;
+  const cv::Mat1b& census = view.census();
   if (row + dy < 0 || row + dy >= census.rows || std::abs(dx) >= census.cols) return {};
   return {std::max(0, -dx), census.cols - std::max(0, dx), census[row + dy] + dx};
 }

@@ -17,7 +17,7 @@ void requireOdd(int value, const std::string& name) {
 
 void requireUsable(const StereoParams& params) {
   requireWithin(params.max_disparity_px, 1, kMaxDisparity_px, "max_disparity_px");
-  requireWithin(params.window_px, 3, 9, "window_px");  // larger sums would not fit 16 bits
+  requireWithin(params.window_px, 3, 7, "window_px");  // larger sums would not fit 16 bits
   requireOdd(params.window_px, "window_px");
   requireWithin(params.largest_cost_ratio, 0, 1, "largest_cost_ratio");
   requireWithin(params.left_right_tolerance_px, 0, kMaxDisparity_px, "left_right_tolerance_px");
@@ -70,10 +70,11 @@ void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) 
   census_.apply(images.reference, reference_census_);
   census_.apply(images.right, right_census_);
   sweep_input_.reference_census = &reference_census_;
-  sweep_input_.views.assign(1, {&right_census_, rig.right_shift});
+  sweep_input_.views.clear();
+  sweep_input_.views.emplace_back(right_census_, rig.right_shift);
   if (!images.top.empty()) {
     census_.apply(images.top, top_census_);
-    sweep_input_.views.push_back({&top_census_, *rig.top_shift});
+    sweep_input_.views.emplace_back(top_census_, *rig.top_shift);
   }
   sweep_input_.max_disparity_px = params_.max_disparity_px;
   sweep_input_.window_px = params_.window_px;

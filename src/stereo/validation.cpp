@@ -1,6 +1,5 @@
 #include "cornerstone/stereo/validation.h"
 
-#include <cmath>
 #include <cstdlib>
 
 namespace cornerstone {
@@ -27,35 +26,32 @@ void Validator::check(const Winners& winners, const SweepInput& input, const Val
       rejection(y, x) =
           codeOf(checkPixel(winners, {x, y}, input.max_disparity_px, params.largest_cost_ratio));
   for (const SecondaryView& view : input.views)
-    checkSecondary(winners, view.shift, params.left_right_tolerance_px, rejection);
+    checkSecondary(winners, view, params.left_right_tolerance_px, rejection);
 }
 
-void Validator::checkSecondary(const Winners& winners, const cv::Point2d& shift, int tolerance_px,
+void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                                cv::Mat1b& rejection) {
   const cv::Rect image({0, 0}, rejection.size());
   claim_cost_.create(rejection.size());
   claim_disparity_px_.create(rejection.size());
   claim_cost_.setTo(Winners::kNoCost);
-  const auto seenAt = [&](int x, int y) {
-    const int d = winners.disparity_px(y, x);
-    return cv::Point(x + static_cast<int>(std::lround(shift.x * d)),
-                     y + static_cast<int>(std::lround(shift.y * d)));
-  };
   for (int y = 0; y < image.height; ++y) {
+    const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y];
     for (int x = 0; x < image.width; ++x) {
-      const cv::Point seen = seenAt(x, y);
-      if (!image.contains(seen) || winners.cost(y, x) >= claim_cost_(seen)) continue;
-      claim_cost_(seen) = winners.cost(y, x);
-      claim_disparity_px_(seen) = winners.disparity_px(y, x);
+      const cv::Point seen = cv::Point(x, y) + view.offsetAt(disparities_px[x]);
+      if (!image.contains(seen) || costs[x] >= claim_cost_(seen)) continue;
+      claim_cost_(seen) = costs[x];
+      claim_disparity_px_(seen) = disparities_px[x];
     }
   }
   for (int y = 0; y < image.height; ++y) {
+    const short* disparities_px = winners.disparity_px[y];
+    std::uint8_t* rejections = rejection[y];
     for (int x = 0; x < image.width; ++x) {
-      if (rejection(y, x) != codeOf(Rejection::kNone)) continue;
-      const cv::Point seen = seenAt(x, y);
-      if (image.contains(seen) &&
-          std::abs(claim_disparity_px_(seen) - winners.disparity_px(y, x)) > tolerance_px)
-        rejection(y, x) = codeOf(Rejection::kLeftRight);
+      if (rejections[x] != codeOf(Rejection::kNone)) continue;
+      const cv::Point seen = cv::Point(x, y) + view.offsetAt(disparities_px[x]);
+      if (image.contains(seen) && std::abs(claim_disparity_px_(seen) - disparities_px[x]) > tolerance_px)
+        rejections[x] = codeOf(Rejection::kLeftRight);
     }
   }
 }

@@ -79,7 +79,7 @@ TEST(OccupancyGrid, RepeatedLooksFromOnePlaceCountLittle) {
   OccupancyGrid grid({});
   grid.insert(wallAt(2.025, 0.1), {});
   const float once = at(grid, 2.02, 0.02);
-  for (int look = 0; look < 2; ++look) grid.insert(wallAt(2.025, 0.1), {}, 0.05);
+  for (int look = 0; look < 2; ++look) grid.insert(wallAt(2.025, 0.1), {}, {0, 0});
   EXPECT_NEAR(at(grid, 2.02, 0.02), once, 0.05);
 }
 

@@ -19,9 +19,6 @@ struct MapperParams {
   ScanFitParams fit;
   OdometryNoise odometry;
   bool fit_scans = true;        // false: odometry as it is (for robots that localise by other means)
-  double new_look_m = 0.2;      // a look from this far away repeats none of the last one's errors,
-  double new_look_rad = 0.09;   // nor one from 5 degrees aside; nearer looks count by their share of it
-  double min_new_share = 0.1;   // of a look from the same place
   int max_contradictions = 10;  // scans in a row that fit ill before they are taken for a changed world
 };
 void describe(ParamVisitor& visitor, MapperParams& params);
@@ -52,7 +49,8 @@ class Mapper {
 
  private:
   void predict(const Pose2& odom_from_base);
-  double newShare() const;
+  LookMotion motion() const;  // since the last look that was inserted
+  double newShare(const RangeScan& scan) const;
 
   MapperParams params_;
   OccupancyGrid grid_;

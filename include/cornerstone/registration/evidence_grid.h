@@ -17,6 +17,12 @@ namespace cornerstone {
 constexpr int kEvidenceDirections = 8;
 constexpr int kFullEvidence = 100;
 
+// What a square says to the edge that suits it best.
+struct Opinion {
+  Eigen::Vector2f centre_m;
+  int evidence = 0;
+};
+
 class EvidenceGrid {
  public:
   // states: of the map's cells (cellStates).
@@ -32,6 +38,8 @@ class EvidenceGrid {
   }
   bool known(const Eigen::Vector2f& point_m) const;
   double cellSize() const { return 1.0 / per_cell_; }
+  // Of all squares that say something.
+  std::vector<Opinion> opinions() const;
   // Middles of the known squares.
   std::vector<Eigen::Vector2f> knownSquares() const;
 

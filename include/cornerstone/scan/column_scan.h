@@ -30,7 +30,7 @@ struct ScanParams {
   // this.
   double correlated_px = 9;
   // Error of all disparities of a frame together (calibration, pixel locking), which no averaging removes.
-  double common_sigma_px = 0.05;
+  double common_sigma_px = 0.1;
   double min_range_m = 0.2;  // nearer answers are the robot's own body or mismatches
 };
 void describe(ParamVisitor& visitor, ScanParams& params);

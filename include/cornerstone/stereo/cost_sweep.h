@@ -1,11 +1,13 @@
-// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed
-// over a fine window and the 3 x 3 of them around (a coarse one), and each pixel keeps its best and
-// second-best local minimum.
+// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed over three
+// windows around the pixel of which each pixel of the image counts for less the farther it is, and each pixel keeps
+// its best and second-best local minimum. With S the sum over the fine window (w x w px):
 //
-//   cost(x, y, d) = 9 * fine(x, y, d) + sum of fine(x + i w, y + j w, d) for i, j in -1..1
+//   cost(x, y, d) = (25 S(x, y) + 3 sum S(x + i w, y + j w; -1..1) + sum S(x + i w, y + j w; -2..2)) / 2
 //
-// Where one camera does not see a pixel the other's cost counts double, so that windows across its border
-// stay fair; where none does, chance is assumed.
+// so that the windows of w, 3 w and 5 w count alike. The fine one keeps depth edges in place, the wide ones decide
+// where there is little texture or much noise.
+// Where one camera does not see a pixel the other's cost counts double, so that windows across its border stay fair;
+// where none does, chance is assumed.
 #pragma once
 
 #include <array>
@@ -14,16 +16,28 @@
 
 namespace cornerstone {
 
-struct SecondaryView {
-  const cv::Mat1b* census = nullptr;
-  cv::Point2d shift;  // as in TrinocularRig
+// A secondary camera: its census image and where it sees a reference pixel.
+class SecondaryView {
+ public:
+  SecondaryView(const cv::Mat1b& census, const cv::Point2d& shift);  // shift as in TrinocularRig
+  const cv::Mat1b& census() const { return *census_; }
+  // Seen pixel less reference pixel, rounded to whole pixels.
+  cv::Point offsetAt(int disparity_px) const {
+    return {(shift_fixed_.x * disparity_px + kHalf) >> kFractionBits,
+            (shift_fixed_.y * disparity_px + kHalf) >> kFractionBits};
+  }
+
+ private:
+  static constexpr int kFractionBits = 16, kHalf = 1 << (kFractionBits - 1);
+  const cv::Mat1b* census_;
+  cv::Point shift_fixed_;
 };
 
 struct SweepInput {
   const cv::Mat1b* reference_census = nullptr;
   std::vector<SecondaryView> views;  // one or two
   int max_disparity_px = 0;          // disparities 0 .. max + 1 are swept; the two ends are only neighbours
-  int window_px = 7;                 // edge of the fine window: odd, 3..9
+  int window_px = 7;                 // edge of the fine window: odd, 3..7
 };
 
 // One value a pixel; costs are below kNoCost.
@@ -51,6 +65,7 @@ class CostSweep {
   void sweepBand(const Band& band);
   void pairCosts(const Band& band, int disparity_px);
   void fineSums(const Band& band);
+  void sumColumns(int row);
   void windowCosts(const Band& band, int disparity_px);
   void keepBest(const Band& band, int disparity_px);
   void maskUnseen(short* costs, int row, int disparity_px) const;
@@ -58,10 +73,10 @@ class CostSweep {
   SweepInput input_;
   cv::Size size_px_;
   int radius_px_ = 0;
-  cv::Mat1b pair_costs_;  // per pixel, summed over cameras, with borders reflected
-  cv::Mat_<std::uint16_t> column_sums_;
-  cv::Mat_<std::uint16_t> fine_sums_;  // with borders reflected
-  cv::Mat_<std::uint16_t> three_rows_;
+  cv::Mat1b pair_costs_;                    // of a row, summed over cameras, with borders mirrored
+  cv::Mat1b row_sums_;                      // of pair costs along the fine window
+  cv::Mat_<std::uint16_t> fine_sums_;       // over the fine window, with borders mirrored
+  cv::Mat_<std::uint16_t> inner_, outer_;   // of a row, see sumColumns
   std::array<cv::Mat1s, 3> costs_;  // of the disparities d, d - 1, d - 2
   Winners winners_;
 };

@@ -26,7 +26,7 @@ struct StereoParams {
   // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px, B 0.12
   // m).
   int max_disparity_px = 32;
-  // Edge of the fine correlation window, odd, 3 to 9; the coarse one is three times it. Smaller: noisier
+  // Edge of the finest correlation window, odd, 3 to 7; the others are three and five times it. Smaller: noisier
   // answers. Larger: obstacles grow by up to half of it.
   int window_px = 7;
   // A pixel's best cost must be below this share of its second-best local minimum. 0.8: few and safe; 1: all.

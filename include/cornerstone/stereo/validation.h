@@ -23,7 +23,7 @@ class Validator {
  private:
   // Two reference pixels that a secondary camera would see at one place: only the better matching one can be
   // right.
-  void checkSecondary(const Winners& winners, const cv::Point2d& shift, int tolerance_px,
+  void checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                       cv::Mat1b& rejection);
 
   cv::Mat1s claim_cost_, claim_disparity_px_;

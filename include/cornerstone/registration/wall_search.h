@@ -1,0 +1,22 @@
+// Poses worth looking at where corners are too few: for each relative yaw that the walls' directions allow,
+// the score of every shift at once, as a correlation (by Fourier transform) of both maps' edges with what the
+// other map says there. Metres of the maps' frames; shifts are right to the square's size.
+#pragma once
+
+#include <vector>
+
+#include "cornerstone/base/pose2.h"
+#include "cornerstone/registration/pose_score.h"
+
+namespace cornerstone {
+
+struct WallSearchOptions {
+  double square_m = 0.4;       // of the correlated grids: within the coarse reach
+  int max_size_squares = 512;  // of the transform: larger maps get larger squares
+  std::size_t peaks = 20;      // poses for each yaw
+};
+
+std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvidence& current,
+                                    const std::vector<double>& yaws, const WallSearchOptions& options);
+
+}  // namespace cornerstone
