@@ -44,7 +44,15 @@ std::array<Eigen::Vector2d, 4> fittedUv(Material material, const Eigen::Vector3d
   return {Eigen::Vector2d{u0, v1}, {u1, v1}, {u1, v0}, {u0, v0}};
 }
 
-void addSide(const Solid& solid, std::size_t i, const Texture& texture, bool shaded, Meshes& meshes) {
+// Where a solid's faces go, and with which look.
+struct Drawing {
+  const Texture& texture;
+  bool shaded;
+  Meshes& meshes;
+};
+
+void addSide(const Solid& solid, std::size_t i, const Drawing& drawing) {
+  const Texture& texture = drawing.texture;
   const Eigen::Vector2d &a = solid.polygon_m[i], &b = solid.polygon_m[(i + 1) % solid.polygon_m.size()];
   const Eigen::Vector2d along = (b - a).normalized();
   const Eigen::Vector2d outward(along.y(), -along.x());
@@ -61,13 +69,15 @@ void addSide(const Solid& solid, std::size_t i, const Texture& texture, bool sha
     const double v0 = 1 - solid.z_min_m / texture.height_m, v1 = 1 - solid.z_max_m / texture.height_m;
     quad.uv = {Eigen::Vector2d{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}};
   }
-  addQuad(quad, {solid.material, shaded ? shadeOf({outward.x(), outward.y(), 0}) : 0}, meshes);
+  addQuad(quad, {solid.material, drawing.shaded ? shadeOf({outward.x(), outward.y(), 0}) : 0},
+          drawing.meshes);
 }
 
 // Top (facing up) or bottom of a prism: a fan.
-void addLid(const Solid& solid, bool top, const Texture& texture, bool shaded, Meshes& meshes) {
+void addLid(const Solid& solid, bool top, const Drawing& drawing) {
+  const Texture& texture = drawing.texture;
   const Eigen::Vector3d normal(0, 0, top ? 1 : -1);
-  auto& mesh = meshes[{solid.material, shaded ? shadeOf(normal) : 0}];
+  auto& mesh = drawing.meshes[{solid.material, drawing.shaded ? shadeOf(normal) : 0}];
   const auto vertex = [&](std::size_t i) {
     const Eigen::Vector2d& p = solid.polygon_m[i];
     const double z_m = top ? solid.z_max_m : solid.z_min_m;
@@ -88,10 +98,10 @@ double brightnessOf(int shade) { return 0.85 + 0.15 * shade / (kShades - 1); }
 Meshes meshSolids(const std::vector<Solid>& solids, const Textures& textures, bool shaded) {
   Meshes meshes;
   for (const Solid& solid : solids) {
-    const Texture& texture = textures.at(solid.material);
-    for (std::size_t i = 0; i < solid.polygon_m.size(); ++i) addSide(solid, i, texture, shaded, meshes);
-    addLid(solid, true, texture, shaded, meshes);
-    if (solid.z_min_m > 0) addLid(solid, false, texture, shaded, meshes);
+    const Drawing drawing{textures.at(solid.material), shaded, meshes};
+    for (std::size_t i = 0; i < solid.polygon_m.size(); ++i) addSide(solid, i, drawing);
+    addLid(solid, true, drawing);
+    if (solid.z_min_m > 0) addLid(solid, false, drawing);
   }
   return meshes;
 }

@@ -56,9 +56,14 @@ std::vector<Interval> openingsOn(const Eigen::Vector2d& from_m, const Eigen::Vec
   return openings;
 }
 
-void addWallPiece(const Wall& wall, const std::vector<Eigen::Vector2d>& outline_m,
-                  const std::vector<Door>& doors, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m,
+struct WallPiece {
+  Eigen::Vector2d from_m, to_m;            // on the centre line
+  std::vector<Eigen::Vector2d> outline_m;  // mitred: right from, right to, left to, left from
+};
+
+void addWallPiece(const Wall& wall, const WallPiece& piece, const std::vector<Door>& doors,
                   std::vector<Solid>& solids) {
+  const auto& [from_m, to_m, outline_m] = piece;
   const Eigen::Vector2d along = (to_m - from_m).normalized();
   const Eigen::Vector2d half = leftOf(along) * wall.thickness_m / 2;
   Eigen::Vector2d right_m = outline_m[0], left_m = outline_m[3];
@@ -94,7 +99,7 @@ void addWall(const Wall& wall, const std::vector<Door>& doors, std::vector<Solid
     const Eigen::Vector2d from_left = leftOffset(i), to_left = leftOffset(i + 1);
     const std::vector<Eigen::Vector2d> outline_m{points_m[i] - from_left, points_m[i + 1] - to_left,
                                                  points_m[i + 1] + to_left, points_m[i] + from_left};
-    addWallPiece(wall, outline_m, doors, points_m[i], points_m[i + 1], solids);
+    addWallPiece(wall, {points_m[i], points_m[i + 1], outline_m}, doors, solids);
   }
 }
 

@@ -54,10 +54,16 @@ void addWallShading(cv::Mat1f& image, double skirting_grey) {
   }
 }
 
-cv::Mat1f wall(cv::RNG& rng, double base, double sigma, int marks, double skirting_grey) {
-  cv::Mat1f image = grain(rng, base, sigma);
-  addMarks(rng, image, marks);
-  addWallShading(image, skirting_grey);
+struct WallLook {
+  double grey, grain_sigma;
+  int marks;
+  double skirting_grey;
+};
+
+cv::Mat1f wall(cv::RNG& rng, const WallLook& look) {
+  cv::Mat1f image = grain(rng, look.grey, look.grain_sigma);
+  addMarks(rng, image, look.marks);
+  addWallShading(image, look.skirting_grey);
   return image;
 }
 
@@ -149,11 +155,11 @@ cv::Mat1f ceiling(cv::RNG& rng) {
 cv::Mat1f surface(Material material, cv::RNG& rng) {
   switch (material) {
     case Material::kPlaster:
-      return wall(rng, 168, 2.6, 90, 110);
+      return wall(rng, {168, 2.6, 90, 110});
     case Material::kPaint:
-      return wall(rng, 150, 1.6, 60, 90);
+      return wall(rng, {150, 1.6, 60, 90});
     case Material::kConcrete:
-      return wall(rng, 130, 4.5, 160, 150);
+      return wall(rng, {130, 4.5, 160, 150});
     case Material::kWood:
       return wood(rng);
     case Material::kMetal:

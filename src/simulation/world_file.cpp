@@ -1,5 +1,6 @@
 // Reads a world's YAML through a strict map reader: every key is asked for by name, and none may be left
 // over.
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -127,6 +128,14 @@ ScenarioRobot readRobot(StrictMap& map) {
   return robot;
 }
 
+// Whoever rebuilds the world from its published text does not know the folder that the map's name hangs on.
+std::string withAbsoluteMapFile(const std::string& yaml_text, const std::string& directory) {
+  YAML::Node world = YAML::Load(yaml_text);
+  const auto file = world["map"]["file"].as<std::string>();
+  world["map"]["file"] = std::filesystem::absolute(std::filesystem::path(directory) / file).string();
+  return YAML::Dump(world);
+}
+
 }  // namespace
 
 World parseWorld(const std::string& yaml_text, const std::string& where, const std::string& directory) {
@@ -152,6 +161,7 @@ World parseWorld(const std::string& yaml_text, const std::string& where, const s
     StrictMap inner = map.inner("map");
     world.map_solids = extrudeMap(inner, directory, materialOf(inner, "material"));
     inner.requireAllRead();
+    world.yaml_text = withAbsoluteMapFile(yaml_text, directory);
   }
   std::set<std::string> names;
   map.each("robots", [&](StrictMap& m) {

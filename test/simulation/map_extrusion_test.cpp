@@ -48,6 +48,10 @@ TEST_F(MapExtrusionTest, OccupiedCellsBecomeBlocks) {
   EXPECT_NEAR(surfaces.distanceTo({1.95, 2.6}), 0.1, 1e-9);
 }
 
+TEST_F(MapExtrusionTest, ThePublishedTextRebuildsTheWorldFromAnywhere) {
+  EXPECT_EQ(parseWorld(parse().yaml_text, "published", "/").map_solids.size(), 2U);
+}
+
 TEST_F(MapExtrusionTest, RefusalsNameTheFile) {
   write("2");
   try {
