@@ -11,9 +11,8 @@
 namespace cornerstone {
 
 struct ValidationParams {
-  double smallest_margin_sigmas = 1.5;  // between best and second-best cost, in CostNoise of the best
-  double smallest_gain_sigmas =
-      4;  // between best cost and that of unrelated images, in CostNoise of the latter
+  double smallest_margin_sigmas = 1.5;    // between best and second-best cost, in CostNoise of the best
+  double smallest_gain_sigmas = 6;        // of the best cost under chanceCost(), in CostNoise of the latter
   double smallest_edge_cost_ratio = 1.5;  // see EdgeCheck
   int left_right_tolerance_px = 1;  // whole pixels between the answers of two reference pixels seen as one
 };
