@@ -41,11 +41,11 @@ struct StereoParams {
   double smallest_edge_cost_ratio = 1.5;
   // Two reference pixels that a second camera would see at one place may differ by this much.
   int left_right_tolerance_px = 1;
-  // Answers less certain than this have too little texture (or their cameras disagree): at 0.5 px two in
-  // three are still within half a pixel.
-  double largest_sigma_px = 0.5;
+  // Answers less certain than this have too little texture (or their cameras disagree): at 0.4 px two in
+  // three are still within that.
+  double largest_sigma_px = 0.4;
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
-  int subpixel_support_px = 7;
+  int subpixel_support_px = 5;
   // A surface with a smaller share of the image's pixels is dropped: 0.4% is 77 px of 160x120. Chance makes
   // blobs of half that on bare walls; a chair leg 4 px wide and 30 high is 120 px.
   double smallest_surface_share = 0.004;
