@@ -12,14 +12,6 @@ namespace {
 
 constexpr int kStep_px = 1;  // neighbours on one surface differ by no more
 
-constexpr std::array<std::uint8_t, 256> bitCounts() {
-  std::array<std::uint8_t, 256> counts{};
-  for (std::size_t i = 1; i < counts.size(); ++i)
-    counts[i] = static_cast<std::uint8_t>(counts[i / 2] + i % 2);
-  return counts;
-}
-constexpr std::array<std::uint8_t, 256> kBitCounts = bitCounts();
-
 // Mean over the cameras that see all of the 3 x 3 px; that of chance if none does.
 double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
   const cv::Mat1b& reference = *input.reference_census;
@@ -32,7 +24,7 @@ double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
     for (int dy = -1; dy <= 1; ++dy) {
       const std::uint8_t* r = reference[at.y + dy] + at.x;
       const std::uint8_t* s = view.census()[seen.y + dy] + seen.x;
-      for (int dx = -1; dx <= 1; ++dx) sum += kBitCounts[static_cast<std::size_t>(r[dx] ^ s[dx])];
+      for (int dx = -1; dx <= 1; ++dx) sum += bitCount(static_cast<std::uint8_t>(r[dx] ^ s[dx]));
     }
   }
   return cameras > 0 ? static_cast<double>(sum) / cameras : 9 * kCensusBits / 2.0;

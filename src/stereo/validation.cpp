@@ -1,6 +1,7 @@
 #include "cornerstone/stereo/validation.h"
 
 #include <cstdlib>
+#include <opencv2/imgproc.hpp>
 
 #include "cornerstone/stereo/cost_noise.h"
 
@@ -42,6 +43,7 @@ void Validator::check(const Winners& winners, const SweepInput& input, const Val
   checkWinners(winners, input, params, rejection);
   for (const SecondaryView& view : input.views)
     checkSecondary(winners, view, params.left_right_tolerance_px, rejection);
+  checkOwnCosts(winners, input, params.largest_own_share, rejection);
   edge_check_.check(winners, input, params.smallest_edge_cost_ratio, rejection);
 }
 
@@ -95,6 +97,28 @@ void Validator::checkSecondary(const Winners& winners, const SecondaryView& view
         rejections[x] = codeOf(Rejection::kLeftRight);
     }
   }
+}
+
+void Validator::checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
+                              cv::Mat1b& rejection) {
+  const cv::Mat1b& reference = *input.reference_census;
+  const cv::Rect image({0, 0}, rejection.size());
+  own_shares_.create(rejection.size());
+  for (int y = 0; y < rejection.rows; ++y) {
+    for (int x = 0; x < rejection.cols; ++x) {
+      int bits = 0, cameras = 0;
+      for (const SecondaryView& view : input.views) {
+        const cv::Point seen = cv::Point(x, y) + view.offsetAt(winners.disparity_px(y, x));
+        if (!image.contains(seen)) continue;
+        bits += bitCount(static_cast<std::uint8_t>(reference(y, x) ^ view.census()(seen)));
+        ++cameras;
+      }
+      own_shares_(y, x) =
+          cameras > 0 ? static_cast<float>(bits) / static_cast<float>(cameras * kCensusBits) : 0.5F;
+    }
+  }
+  cv::blur(own_shares_, own_shares_, {input.window_px, input.window_px}, {-1, -1}, cv::BORDER_REFLECT);
+  rejection.setTo(codeOf(Rejection::kTexture), (own_shares_ > largest_share) & (rejection == 0));
 }
 
 }  // namespace cornerstone

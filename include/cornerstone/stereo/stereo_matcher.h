@@ -39,6 +39,9 @@ struct StereoParams {
   // (else surfaces grow over their surroundings). 1: any better; 3: nearly every pixel beside an edge is
   // dropped, thin things with it.
   double smallest_edge_cost_ratio = 1.5;
+  // Share of census bits that may differ in the finest window at the winner; 0.5 is chance. Keeps surfaces
+  // from growing over bare walls beside them. Lower: fewer answers through noise.
+  double largest_own_share = 0.4;
   // Two reference pixels that a second camera would see at one place may differ by this much.
   int left_right_tolerance_px = 1;
   // Answers less certain than this have too little texture (or their cameras disagree): at 0.4 px two in
