@@ -11,7 +11,7 @@ namespace {
 constexpr int kLanes = 8;
 constexpr int kCoarseSteps = 2;  // fine windows beside the middle one that the widest sum reaches
 // Rows of a band are chosen so that what the sweep touches stays in the second-level cache.
-constexpr int kBandPixels = 24 * 1024;
+constexpr int kBandPixels = 64 * 1024;
 constexpr int kSmallestBand_rows = 32;
 
 // The row or column that a border one mirrors: -1 -> 0, count -> count - 1.
@@ -22,9 +22,13 @@ int mirrored(int at, int count) {
 
 template <typename T>
 void mirrorEnds(T* row, int border, int width) {  // row[border] is the image's first column
-  for (int i = 0; i < border; ++i) {
-    row[i] = row[border + mirrored(i - border, width)];
-    row[border + width + i] = row[border + mirrored(width + i, width)];
+  T *left = row + border, *right = left + width;  // the image's columns are left[0] .. right[-1]
+  const int plain = std::min(border, width);
+  for (int i = 0; i < plain; ++i) left[-1 - i] = left[i];
+  for (int i = 0; i < plain; ++i) right[i] = right[-1 - i];
+  for (int i = plain; i < border; ++i) {  // images narrower than the border: mirrored more than once
+    left[-1 - i] = left[mirrored(-1 - i, width)];
+    right[i] = left[mirrored(width + i, width)];
   }
 }
 

@@ -1,5 +1,6 @@
 #include "cornerstone/stereo/edge_check.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 
@@ -10,14 +11,6 @@ namespace cornerstone {
 namespace {
 
 constexpr int kStep_px = 1;  // neighbours on one surface differ by no more
-
-constexpr std::array<std::uint8_t, 256> bitCounts() {
-  std::array<std::uint8_t, 256> counts{};
-  for (std::size_t i = 1; i < counts.size(); ++i)
-    counts[i] = static_cast<std::uint8_t>(counts[i / 2] + i % 2);
-  return counts;
-}
-constexpr std::array<std::uint8_t, 256> kBitCounts = bitCounts();
 
 // Mean over the cameras that see all of the 3 x 3 px; that of chance if none does.
 double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
@@ -31,7 +24,7 @@ double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
     for (int dy = -1; dy <= 1; ++dy) {
       const std::uint8_t* r = reference[at.y + dy] + at.x;
       const std::uint8_t* s = view.census()[seen.y + dy] + seen.x;
-      for (int dx = -1; dx <= 1; ++dx) sum += kBitCounts[static_cast<std::size_t>(r[dx] ^ s[dx])];
+      for (int dx = -1; dx <= 1; ++dx) sum += bitCount(static_cast<std::uint8_t>(r[dx] ^ s[dx]));
     }
   }
   return cameras > 0 ? static_cast<double>(sum) / cameras : 9 * kCensusBits / 2.0;
@@ -58,10 +51,20 @@ bool EdgeCheck::standsOut(const Winners& winners, const SweepInput& input, cv::P
 void EdgeCheck::check(const Winners& winners, const SweepInput& input, double smallest_cost_ratio,
                       cv::Mat1b& rejection) {
   rejection.copyTo(before_);
-  for (int y = 0; y < rejection.rows; ++y)
-    for (int x = 0; x < rejection.cols; ++x)
-      if (before_(y, x) == 0 && !standsOut(winners, input, {x, y}, smallest_cost_ratio))
+  const int reach_px = input.window_px / 2 + 1;
+  for (int y = 0; y < rejection.rows; ++y) {
+    const short* here = winners.disparity_px[y];
+    const short* above = winners.disparity_px[std::max(y - reach_px, 0)];
+    const short* below = winners.disparity_px[std::min(y + reach_px, rejection.rows - 1)];
+    for (int x = 0; x < rejection.cols; ++x) {
+      if (before_(y, x) != 0) continue;
+      const auto steps = [own = here[x]](short other) { return std::abs(other - own) > kStep_px; };
+      const bool beside_edge = steps(above[x]) || steps(below[x]) || steps(here[std::max(x - reach_px, 0)]) ||
+                               steps(here[std::min(x + reach_px, rejection.cols - 1)]);
+      if (beside_edge && !standsOut(winners, input, {x, y}, smallest_cost_ratio))
         rejection(y, x) = static_cast<std::uint8_t>(Rejection::kUniqueness);
+    }
+  }
 }
 
 }  // namespace cornerstone

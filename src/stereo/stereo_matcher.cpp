@@ -22,6 +22,7 @@ void requireUsable(const StereoParams& params) {
   requireWithin(params.smallest_margin_sigmas, 0, 100, "smallest_margin_sigmas");
   requireWithin(params.smallest_gain_sigmas, 0, 100, "smallest_gain_sigmas");
   requireWithin(params.smallest_edge_cost_ratio, 0, 100, "smallest_edge_cost_ratio");
+  requireWithin(params.largest_own_share, 0, 1, "largest_own_share");
   requireWithin(params.left_right_tolerance_px, 0, kMaxDisparity_px, "left_right_tolerance_px");
   requirePositive(params.largest_sigma_px, "largest_sigma_px");
   requireWithin(params.subpixel_support_px, 1, 31, "subpixel_support_px");
@@ -66,10 +67,11 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   requireUsable(images, rig);
   disparity.rig = rig;
   sweep(images, rig);
-  validator_.check(*winners_, sweep_input_,
-                   {params_.smallest_margin_sigmas, params_.smallest_gain_sigmas,
-                    params_.smallest_edge_cost_ratio, params_.left_right_tolerance_px},
-                   disparity.rejection);
+  validator_.check(
+      *winners_, sweep_input_,
+      {params_.smallest_margin_sigmas, params_.smallest_gain_sigmas, params_.smallest_edge_cost_ratio,
+       params_.largest_own_share, params_.left_right_tolerance_px},
+      disparity.rejection);
   refine(disparity);
   dropSmallSurfaces(disparity);
 }

@@ -8,6 +8,7 @@ void describe(ParamVisitor& visitor, StereoParams& params) {
   visitor.field("smallest_margin_sigmas", params.smallest_margin_sigmas);
   visitor.field("smallest_gain_sigmas", params.smallest_gain_sigmas);
   visitor.field("smallest_edge_cost_ratio", params.smallest_edge_cost_ratio);
+  visitor.field("largest_own_share", params.largest_own_share);
   visitor.field("left_right_tolerance_px", params.left_right_tolerance_px);
   visitor.field("largest_sigma_px", params.largest_sigma_px);
   visitor.field("subpixel_support_px", params.subpixel_support_px);

@@ -1,6 +1,7 @@
 #include "cornerstone/stereo/validation.h"
 
 #include <cstdlib>
+#include <opencv2/imgproc.hpp>
 
 #include "cornerstone/stereo/cost_noise.h"
 
@@ -42,6 +43,7 @@ void Validator::check(const Winners& winners, const SweepInput& input, const Val
   checkWinners(winners, input, params, rejection);
   for (const SecondaryView& view : input.views)
     checkSecondary(winners, view, params.left_right_tolerance_px, rejection);
+  checkOwnCosts(winners, input, params.largest_own_share, rejection);
   edge_check_.check(winners, input, params.smallest_edge_cost_ratio, rejection);
 }
 
@@ -65,29 +67,58 @@ void Validator::checkWinners(const Winners& winners, const SweepInput& input, co
 
 void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                                cv::Mat1b& rejection) {
-  const cv::Rect image({0, 0}, rejection.size());
+  const int rows = rejection.rows, cols = rejection.cols;
   claim_cost_.create(rejection.size());
   claim_disparity_px_.create(rejection.size());
   claim_cost_.setTo(Winners::kNoCost);
-  for (int y = 0; y < image.height; ++y) {
+  short *claim_costs = claim_cost_[0], *claim_disparities_px = claim_disparity_px_[0];
+  // Index of the secondary pixel that sees reference pixel (x, y), or -1.
+  const auto seenBy = [&](int x, int y, int disparity_px) {
+    const cv::Point offset = view.offsetAt(disparity_px);
+    const int sx = x + offset.x, sy = y + offset.y;
+    return sx >= 0 && sx < cols && sy >= 0 && sy < rows ? sy * cols + sx : -1;
+  };
+  for (int y = 0; y < rows; ++y) {
     const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y];
-    for (int x = 0; x < image.width; ++x) {
-      const cv::Point seen = cv::Point(x, y) + view.offsetAt(disparities_px[x]);
-      if (!image.contains(seen) || costs[x] >= claim_cost_(seen)) continue;
-      claim_cost_(seen) = costs[x];
-      claim_disparity_px_(seen) = disparities_px[x];
+    for (int x = 0; x < cols; ++x) {
+      const int seen = seenBy(x, y, disparities_px[x]);
+      if (seen < 0 || costs[x] >= claim_costs[seen]) continue;
+      claim_costs[seen] = costs[x];
+      claim_disparities_px[seen] = disparities_px[x];
     }
   }
-  for (int y = 0; y < image.height; ++y) {
+  for (int y = 0; y < rows; ++y) {
     const short* disparities_px = winners.disparity_px[y];
     std::uint8_t* rejections = rejection[y];
-    for (int x = 0; x < image.width; ++x) {
+    for (int x = 0; x < cols; ++x) {
       if (rejections[x] != codeOf(Rejection::kNone)) continue;
-      const cv::Point seen = cv::Point(x, y) + view.offsetAt(disparities_px[x]);
-      if (image.contains(seen) && std::abs(claim_disparity_px_(seen) - disparities_px[x]) > tolerance_px)
+      const int seen = seenBy(x, y, disparities_px[x]);
+      if (seen >= 0 && std::abs(claim_disparities_px[seen] - disparities_px[x]) > tolerance_px)
         rejections[x] = codeOf(Rejection::kLeftRight);
     }
   }
+}
+
+void Validator::checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
+                              cv::Mat1b& rejection) {
+  const cv::Mat1b& reference = *input.reference_census;
+  const cv::Rect image({0, 0}, rejection.size());
+  own_shares_.create(rejection.size());
+  for (int y = 0; y < rejection.rows; ++y) {
+    for (int x = 0; x < rejection.cols; ++x) {
+      int bits = 0, cameras = 0;
+      for (const SecondaryView& view : input.views) {
+        const cv::Point seen = cv::Point(x, y) + view.offsetAt(winners.disparity_px(y, x));
+        if (!image.contains(seen)) continue;
+        bits += bitCount(static_cast<std::uint8_t>(reference(y, x) ^ view.census()(seen)));
+        ++cameras;
+      }
+      own_shares_(y, x) =
+          cameras > 0 ? static_cast<float>(bits) / static_cast<float>(cameras * kCensusBits) : 0.5F;
+    }
+  }
+  cv::blur(own_shares_, own_shares_, {input.window_px, input.window_px}, {-1, -1}, cv::BORDER_REFLECT);
+  rejection.setTo(codeOf(Rejection::kTexture), (own_shares_ > largest_share) & (rejection == 0));
 }
 
 }  // namespace cornerstone

@@ -124,6 +124,37 @@ TEST(StereoMatcher, TopCameraSeesHorizontalStripes) {
   EXPECT_LT(shareOf(matched(images), Rejection::kNone), 0.02);
 }
 
+TEST(StereoMatcher, ThirdCameraMayStandAnywhereOnAnAxis) {
+  // Bottom, left, a second right one twice as far, a top one at 0.75 of the baseline.
+  for (const cv::Point2d shift : {cv::Point2d(0, -1), {1, 0}, {-2, 0}, {0, 0.75}}) {
+    cv::RNG random(12);
+    const Texture texture(kSize, 1, 30, random);
+    StereoImages images = viewsOf(texture, {6.3, 0}, {2, 1}, random);
+    cv::Mat1f third(kSize);
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x) third(y, x) = texture.at(x - 6.3 * shift.x, y - 6.3 * shift.y);
+    images.top = photographed(third, 2, 1, random);
+    TrinocularRig rig = rigOf(images);
+    rig.top_shift = shift;
+    const Disparity disparity = StereoMatcher(StereoParams()).match(images, rig);
+    EXPECT_GT(shareOf(disparity, Rejection::kNone), 0.93) << shift;
+    EXPECT_NEAR(cv::mean(disparity.disparity_px, disparity.rejection == 0)[0], 6.3, 0.1) << shift;
+  }
+}
+
+TEST(StereoMatcher, BuffersOfOneFrameDoNotReachTheNext) {
+  cv::RNG random(13);
+  const StereoImages first = viewsOf(Texture(kSize, 1, 30, random), {5, 0}, {2, 1}, random);
+  const StereoImages second = viewsOf(Texture(kSize, 1, 30, random), {9.5, 0}, {2, 1}, random);
+  StereoMatcher matcher{StereoParams()};
+  Disparity disparity;
+  matcher.match(first, rigOf(first), disparity);
+  matcher.match(second, rigOf(second), disparity);
+  const Disparity fresh = matched(second);
+  EXPECT_EQ(cv::norm(disparity.disparity_px, fresh.disparity_px, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(disparity.sigma_px, fresh.sigma_px, cv::NORM_INF), 0);
+}
+
 TEST(StereoMatcher, NearerThanTheRangeIsRefused) {
   cv::RNG random(7);
   StereoParams params;

@@ -5,11 +5,19 @@
 // through noise. The matching cost of two pixels is the number of bits that differ.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 namespace cornerstone {
 
 constexpr int kCensusBits = 8;
+
+inline int bitCount(std::uint8_t census) {
+  unsigned bits = census;
+  bits -= (bits >> 1) & 0x55u;
+  bits = (bits & 0x33u) + ((bits >> 2) & 0x33u);
+  return static_cast<int>((bits + (bits >> 4)) & 0x0fu);
+}
 
 // Holds copies of the image, so that nothing is allocated frame by frame.
 class CensusTransform {

@@ -1,6 +1,6 @@
 // Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed
-// over three windows around the pixel of which each pixel of the image counts for less the farther it is, and
-// each pixel keeps its best and second-best local minimum. With S the sum over the fine window (w x w px):
+// over three windows, one inside the other, and each pixel keeps its best and second-best local minimum. With
+// S the sum over the fine window (w x w px):
 //
 //   cost(x, y, d) = (32 S(x, y) + 2 sum S(x + i w, y + j w; -1..1) + sum S(x + i w, y + j w; -2..2)) / 2
 //

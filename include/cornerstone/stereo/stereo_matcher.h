@@ -1,8 +1,7 @@
 // Dense correlation stereo over two or three rectified cameras: the matching cost of each candidate disparity
 // of a reference pixel is summed over the camera pairs before the best is chosen (Okutomi and Kanade, 1993).
 //
-// census -> plane sweep (cost_sweep.h) -> checks (validation.h) -> sub-pixel and sigma (subpixel.h) ->
-// surfaces
+// census -> plane sweep (cost_sweep.h) -> checks (validation.h) -> sub-pixel, sigma (subpixel.h) -> surfaces
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -23,8 +22,8 @@ struct StereoImages {  // rectified grey images of one instant and of one size
 };
 
 struct StereoParams {
-  // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px, B 0.12
-  // m).
+  // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px,
+  // B 0.12 m).
   int max_disparity_px = 32;
   // Edge of the finest correlation window, odd, 3 to 7; the others are three and five times it. Smaller:
   // noisier answers. Larger: obstacles grow by up to half of it.
@@ -33,19 +32,23 @@ struct StereoParams {
   // winner will do; 2: safer, a twentieth fewer answers on clean images and a fifth fewer on noisy ones.
   double smallest_margin_sigmas = 1.5;
   // The best cost must be this many standard deviations below that of unrelated images: the lowest of a
-  // hundred random costs is 2.5 below. Bare walls fail here.
+  // hundred random costs is 2.5 below, and neighbours share theirs. Bare walls fail here; with 5, one in four
+  // noisy ones keeps a blob.
   double smallest_gain_sigmas = 6;
   // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px
   // (else surfaces grow over their surroundings). 1: any better; 3: nearly every pixel beside an edge is
   // dropped, thin things with it.
   double smallest_edge_cost_ratio = 1.5;
+  // Share of census bits that may differ in the finest window at the winner; 0.5 is chance. Keeps surfaces
+  // from growing over bare walls beside them. Lower: fewer answers through noise.
+  double largest_own_share = 0.4;
   // Two reference pixels that a second camera would see at one place may differ by this much.
   int left_right_tolerance_px = 1;
-  // Answers less certain than this have too little texture (or their cameras disagree): at 0.5 px two in
-  // three are still within half a pixel.
-  double largest_sigma_px = 0.5;
+  // Answers less certain than this have too little texture (or their cameras disagree): at 0.4 px two in
+  // three are still within that.
+  double largest_sigma_px = 0.4;
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
-  int subpixel_support_px = 7;
+  int subpixel_support_px = 5;
   // A surface with a smaller share of the image's pixels is dropped: 0.4% is 77 px of 160x120. Chance makes
   // blobs of half that on bare walls; a chair leg 4 px wide and 30 high is 120 px.
   double smallest_surface_share = 0.004;

@@ -20,7 +20,7 @@ struct SubpixelInput {
 };
 
 struct SubpixelParams {
-  int support_px = 7;  // edge of the support of the average, odd; 1: no averaging
+  int support_px = 5;  // edge of the support of the average, odd; 1: no averaging
 };
 
 class SubpixelRefiner {

@@ -11,10 +11,10 @@
 namespace cornerstone {
 
 struct ValidationParams {
-  double smallest_margin_sigmas = 1.5;  // between best and second-best cost, in CostNoise of the best
-  double smallest_gain_sigmas =
-      4;  // between best cost and that of unrelated images, in CostNoise of the latter
+  double smallest_margin_sigmas = 1.5;    // between best and second-best cost, in CostNoise of the best
+  double smallest_gain_sigmas = 6;        // of the best cost under chanceCost(), in CostNoise of the latter
   double smallest_edge_cost_ratio = 1.5;  // see EdgeCheck
+  double largest_own_share = 0.4;         // of differing bits in the fine window at the winner; chance: 0.5
   int left_right_tolerance_px = 1;  // whole pixels between the answers of two reference pixels seen as one
 };
 
@@ -33,7 +33,13 @@ class Validator {
   void checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                       cv::Mat1b& rejection);
 
+  // A pixel beside a textured surface takes its disparity from the wide windows though nothing matches around
+  // it.
+  void checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
+                     cv::Mat1b& rejection);
+
   EdgeCheck edge_check_;
+  cv::Mat1f own_shares_;
   cv::Mat1s claim_cost_, claim_disparity_px_;
 };
 
