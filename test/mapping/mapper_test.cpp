@@ -20,17 +20,26 @@ TEST(Mapper, TakesMostOfTheDriftOutOfATour) {
   const test::Room room = test::officeRoom();
   std::mt19937 random(1);
   const auto steps = test::driveTour(test::officeTour(), {}, random);
-  Mapper mapper({});
+  MapperParams params;  // of a robot whose odometry is known to be bad: the looks count more
+  params.odometry = {0.04, 0.04, 0.04, 0.05, 0.01, 0.007, 0.01};
+  params.fit.loss_sigmas = 2;
+  params.fit.look_sigma_m = 0.005;
+  params.fit.look_sigma_rad = 0.003;
+  Mapper mapper(params);
   const Pose2 start = steps.front().map_from_base;
-  for (const auto& step : steps)
+  Pose2 error, by_odometry;
+  double worst_m = 0, worst_by_odometry_m = 0;
+  for (const auto& step : steps) {
     mapper.update(lookFrom(room, step.map_from_base, random), step.odom_from_base);
-
-  const Pose2 truth = start.inverse() * steps.back().map_from_base;
-  const Pose2 by_odometry = truth.inverse() * steps.back().odom_from_base;
-  const Pose2 error = truth.inverse() * mapper.pose().map_from_base;
-  EXPECT_GT(by_odometry.translation().norm(), 1);
-  EXPECT_LT(error.translation().norm(), by_odometry.translation().norm() / 2);
-  EXPECT_LT(std::abs(error.yaw_rad), std::abs(by_odometry.yaw_rad) / 2);
+    const Pose2 truth = start.inverse() * step.map_from_base;
+    error = truth.inverse() * mapper.pose().map_from_base;
+    by_odometry = truth.inverse() * step.odom_from_base;
+    worst_m = std::max(worst_m, error.translation().norm());
+    worst_by_odometry_m = std::max(worst_by_odometry_m, by_odometry.translation().norm());
+  }
+  EXPECT_GT(worst_by_odometry_m, 1.5);
+  EXPECT_LT(worst_m, worst_by_odometry_m / 4);
+  EXPECT_LT(std::abs(error.yaw_rad), 0.1);
   const Pose2 same = mapper.mapFromOdom() * steps.back().odom_from_base;
   EXPECT_NEAR(same.x_m, mapper.pose().map_from_base.x_m, 1e-9);
 }

@@ -12,8 +12,8 @@ struct TourParams {
   double speed_m_s = 1.0;
   double turn_rad_s = 1.5;
   double rate_hz = 10;
-  double scale_error = 0.01;          // of the distance, systematic
-  double yaw_drift_rad_per_m = 0.01;  // systematic
+  double scale_error = 0.03;                    // of the distance, systematic
+  double yaw_drift_rad_per_m = 2 * M_PI / 180;  // systematic
   double noise_m_per_sqrt_m = 0.005;
   double noise_rad_per_sqrt_m = 0.0035;
 };
