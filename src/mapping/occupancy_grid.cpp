@@ -84,7 +84,8 @@ void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, co
 
 double OccupancyGrid::newShare(double range_m, const LookMotion& motion) const {
   const double whole_m = params_.new_look_ratio * std::max(range_m, params_.resolution_m);
-  return std::clamp(motion.moved_m / whole_m + motion.turned_rad / params_.new_look_rad, params_.min_new_share, 1.0);
+  return std::clamp(motion.moved_m / whole_m + motion.turned_rad / params_.new_look_rad,
+                    params_.min_new_share, 1.0);
 }
 
 void OccupancyGrid::clear() {

@@ -97,15 +97,17 @@ Eigen::Matrix3d informationAt(const std::vector<LineMatch>& matches, const Pose2
   return information;
 }
 
-// The solution takes the scan at its word, L for its information. What one look cannot know (F) and what it repeats
-// (new share n) leave it L' = n (I + L F)^-1 L, which holds where L has no rank too. With P the prior's information, d
-// the solution's step from the prior: L (scan - prior) = (L + P) d, and the step that L' allows is
+// The solution takes the scan at its word, L for its information. What one look cannot know (F) and what it
+// repeats (new share n) leave it L' = n (I + L F)^-1 L, which holds where L has no rank too. With P the
+// prior's information, d the solution's step from the prior: L (scan - prior) = (L + P) d, and the step that
+// L' allows is
 //   d' = (L' + P)^-1 n (I + L F)^-1 (L + P) d.
 PoseEstimate tempered(const Pose2& solution, const Eigen::Matrix3d& information, const ScanFitStart& start,
                       const ScanFitParams& params) {
-  const Eigen::Matrix3d floor = Eigen::Vector3d(params.look_sigma_m, params.look_sigma_m, params.look_sigma_rad)
-                                    .cwiseAbs2()
-                                    .asDiagonal();
+  const Eigen::Matrix3d floor =
+      Eigen::Vector3d(params.look_sigma_m, params.look_sigma_m, params.look_sigma_rad)
+          .cwiseAbs2()
+          .asDiagonal();
   const Eigen::Matrix3d prior = start.prior.covariance.inverse();
   const Eigen::Matrix3d temper =
       start.new_share * (Eigen::Matrix3d::Identity() + information * floor).inverse();

@@ -76,8 +76,7 @@ void ScanWedge::apply(const LookMotion& motion) {
   for (int row = 0; row < window_.geometry.rows; ++row)
     for (int col = 0; col < window_.geometry.cols; ++col) {
       const Eigen::Vector2d from_sensor_m = window_.geometry.centreOf({col, row}) - sensor_m;
-      if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_)
-        updateCell({col, row}, from_sensor_m, motion);
+      if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_) updateCell({col, row}, from_sensor_m, motion);
     }
 }
 

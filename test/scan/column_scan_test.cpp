@@ -37,11 +37,11 @@ TEST(ColumnScan, WallAcrossTheView) {
 
 TEST(ColumnScan, IntervalIsTwoSigmaInDisparity) {
   const ScanParams params;
-  const Beam beam = middle(scanFromDisparity(flat(3.2F, 0.1F), levelCamera(), params));
+  const Beam beam = middle(scanFromDisparity(flat(3.2F, 0.3F), levelCamera(), params));
   const double sigma_px = (9.6 / beam.near_m - 3.2) / 2;
   EXPECT_NEAR(9.6 / beam.far_m, 3.2 - 2 * sigma_px, 1e-3);
   EXPECT_GT(sigma_px, params.common_sigma_px);  // averaging does not remove what all pixels share
-  EXPECT_LT(sigma_px, 0.1);                     // but it does help
+  EXPECT_LT(sigma_px, 0.25);                    // but it does help
   EXPECT_NEAR(beam.sigma_m, sigma_px * 3 / 3.2, 1e-3);
 }
 

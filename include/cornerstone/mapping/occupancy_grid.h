@@ -31,9 +31,9 @@ struct GridParams {
       3.0;  // largest log-odds one look adds to a cell: a new obstacle is there after 2 looks
   double min_log_odds = -3;  // evidence is held within these, so that the map stays able to change
   double max_log_odds = 7;
-  // Stereo repeats its errors when it looks again from the same place. A look counts in full when the sensor has moved
-  // by this share of the distance to what it sees, or turned by this angle, and by its part of that before; at least
-  // by the last of these.
+  // Stereo repeats its errors when it looks again from the same place. A look counts in full when the sensor
+  // has moved by this share of the distance to what it sees, or turned by this angle, and by its part of that
+  // before; at least by the last of these.
   double new_look_ratio = 0.1;
   double new_look_rad = 0.26;
   double min_new_share = 0.1;
@@ -76,7 +76,8 @@ struct SurfaceHit {
 class OccupancyGrid {
  public:
   explicit OccupancyGrid(const GridParams& params);  // throws InputError naming a parameter out of range
-  // What a look confirms counts by how new it is (GridParams); what contradicts the map always counts in full.
+  // What a look confirms counts by how new it is (GridParams); what contradicts the map always counts in
+  // full.
   void insert(const RangeScan& scan, const Pose2& map_from_base, const LookMotion& motion = kFirstLook);
   // How much of a look at something this far away is new.
   double newShare(double range_m, const LookMotion& motion) const;

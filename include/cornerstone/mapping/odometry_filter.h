@@ -15,15 +15,15 @@ namespace cornerstone {
 
 struct OdometryNoise {
   // What is not known about the systematic drift at the start (standard deviations).
-  double scale_ratio = 0.04;
-  double yaw_drift_rad_per_m = 0.04;  // 2.3 degrees a metre
-  double turn_scale_ratio = 0.04;
+  double scale_ratio = 0.02;
+  double yaw_drift_rad_per_m = 0.015;  // nearly a degree a metre
+  double turn_scale_ratio = 0.02;
   // How fast the rates themselves change with load and floor, relative to the above, per root of a metre.
   double drift_change_per_sqrt_m = 0.05;
   // What is left: noise. It adds up with the root of the way.
-  double noise_m_per_sqrt_m = 0.01;
-  double noise_rad_per_sqrt_m = 0.007;
-  double noise_rad_per_sqrt_rad = 0.01;
+  double noise_m_per_sqrt_m = 0.006;
+  double noise_rad_per_sqrt_m = 0.004;
+  double noise_rad_per_sqrt_rad = 0.006;
 };
 void describe(ParamVisitor& visitor, OdometryNoise& noise);
 void requireValid(const OdometryNoise& noise);  // throws InputError naming the parameter

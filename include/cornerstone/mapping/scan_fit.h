@@ -12,15 +12,15 @@
 namespace cornerstone {
 
 struct ScanFitParams {
-  double gate_m = 0.2;              // an end farther from every surface of the map shows something new
-  double line_radius_m = 0.15;      // neighbours that give a surface its normal; wider rounds corners off
-  double surface_sigma_m = 0.02;    // error of the map's own surfaces
-  double loss_sigmas = 0.5;           // residuals beyond this count less (Cauchy): stereo's errors have long tails
+  double gate_m = 0.2;            // an end farther from every surface of the map shows something new
+  double line_radius_m = 0.15;    // neighbours that give a surface its normal; wider rounds corners off
+  double surface_sigma_m = 0.02;  // error of the map's own surfaces
+  double loss_sigmas = 0.5;  // residuals beyond this count less (Cauchy): stereo's errors have long tails
   double min_agreeing_share = 0.5;  // of the paired ends must lie on their line within 3 sigma
   int min_matches = 12;             // paired ends
   int max_rounds = 5;               // of pairing and solving
-  // What no number of beams averages away in one look: cameras not quite aligned bend each view in the same way. The
-  // pose that a look alone tells has at least these errors.
+  // What no number of beams averages away in one look: cameras not quite aligned bend each view in the same
+  // way. The pose that a look alone tells has at least these errors.
   double look_sigma_m = 0.015;
   double look_sigma_rad = 0.01;
 };
@@ -43,7 +43,8 @@ struct ScanFit {
 // What a scan is fitted to, and what is known before.
 struct ScanFitStart {
   PoseEstimate prior;
-  double new_share = 1;  // of the look: errors repeat from one place (OccupancyGrid::newShare); scales its information
+  double new_share =
+      1;  // of the look: errors repeat from one place (OccupancyGrid::newShare); scales its information
 };
 
 ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitStart& start,

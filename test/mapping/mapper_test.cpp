@@ -1,0 +1,127 @@
+#include "cornerstone/mapping/mapper.h"
+
+#include <gtest/gtest.h>
+
+#include "cornerstone/base/errors.h"
+#include "cornerstone/scan/column_scan.h"
+#include "support/room.h"
+#include "support/tour.h"
+
+namespace cornerstone {
+namespace {
+
+RangeScan lookFrom(const test::Room& room, const Pose2& pose, std::mt19937& random) {
+  return scanFromDisparity(disparityOf(room, pose, test::rigOf(160), {}, random), test::levelCamera(), {});
+}
+
+// 48 m through officeRoom() with 3 % and 2 degrees a metre of drift: without correction the end is metres
+// off.
+TEST(Mapper, TakesMostOfTheDriftOutOfATour) {
+  const test::Room room = test::officeRoom();
+  std::mt19937 random(1);
+  const auto steps = test::driveTour(test::officeTour(), {}, random);
+  MapperParams params;  // of a robot whose odometry is known to be bad: the looks count more
+  params.odometry = {0.04, 0.04, 0.04, 0.05, 0.01, 0.007, 0.01};
+  params.fit.loss_sigmas = 2;
+  params.fit.look_sigma_m = 0.005;
+  params.fit.look_sigma_rad = 0.003;
+  Mapper mapper(params);
+  const Pose2 start = steps.front().map_from_base;
+  Pose2 error, by_odometry;
+  double worst_m = 0, worst_by_odometry_m = 0;
+  for (const auto& step : steps) {
+    mapper.update(lookFrom(room, step.map_from_base, random), step.odom_from_base);
+    const Pose2 truth = start.inverse() * step.map_from_base;
+    error = truth.inverse() * mapper.pose().map_from_base;
+    by_odometry = truth.inverse() * step.odom_from_base;
+    worst_m = std::max(worst_m, error.translation().norm());
+    worst_by_odometry_m = std::max(worst_by_odometry_m, by_odometry.translation().norm());
+  }
+  EXPECT_GT(worst_by_odometry_m, 1.5);
+  EXPECT_LT(worst_m, worst_by_odometry_m / 4);
+  EXPECT_LT(std::abs(error.yaw_rad), 0.1);
+  const Pose2 same = mapper.mapFromOdom() * steps.back().odom_from_base;
+  EXPECT_NEAR(same.x_m, mapper.pose().map_from_base.x_m, 1e-9);
+}
+
+// With the true poses the map must be sharp: what is wrong then is the sensor model's fault.
+TEST(Mapper, TruePosesGiveASharpMap) {
+  const test::Room room = test::officeRoom();
+  std::mt19937 random(2);
+  test::TourParams exact;
+  exact.scale_error = exact.yaw_drift_rad_per_m = exact.noise_m_per_sqrt_m = exact.noise_rad_per_sqrt_m = 0;
+  const auto steps = test::driveTour(test::officeTour(), exact, random);
+  MapperParams params;
+  params.fit_scans = false;
+  Mapper mapper(params);
+  for (const auto& step : steps)
+    mapper.update(lookFrom(room, step.map_from_base, random), step.odom_from_base);
+  const GridMap map = mapper.grid().snapshot();
+  int occupied = 0, good = 0;
+  for (int row = 0; row < map.geometry.rows; ++row)
+    for (int col = 0; col < map.geometry.cols; ++col) {
+      if (map.occupied(row, col) <= 0.65F) continue;
+      ++occupied;
+      good += room.distanceTo(steps.front().map_from_base * map.geometry.centreOf({col, row})) <= 0.1;
+    }
+  EXPECT_GT(occupied, 800);
+  EXPECT_GT(good, 0.9 * occupied);
+}
+
+TEST(Mapper, RefusesPosesThatAreNotNumbersAndStaysAsItWas) {
+  const test::Room room = test::officeRoom();
+  std::mt19937 random(3);
+  Mapper mapper({});
+  const RangeScan scan = lookFrom(room, {3, 2, 0}, random);
+  mapper.update(scan, {});
+  const auto version = mapper.grid().version();
+  EXPECT_THROW(mapper.update(scan, {NAN, 0, 0}), InputError);
+  EXPECT_EQ(mapper.grid().version(), version);
+}
+
+TEST(Mapper, EmptyScansAreNotInsertedButThePoseGoesOn) {
+  Mapper mapper({});
+  mapper.update({}, {});
+  const MapperUpdate update = mapper.update({}, {1, 0, 0});
+  EXPECT_FALSE(update.inserted);
+  EXPECT_FALSE(update.fitted);
+  EXPECT_NEAR(mapper.pose().map_from_base.x_m, 1, 1e-9);
+  EXPECT_NEAR(std::sqrt(update.covariance(0, 0)), 0.021, 0.003);  // 2 % of scale and 6 mm of noise
+}
+
+TEST(Mapper, ResetBeginsANewEpochAndLoadGoesOnInASavedMap) {
+  const test::Room room = test::officeRoom();
+  std::mt19937 random(4);
+  Mapper mapper({});
+  const Pose2 at{3, 2, 0.5};
+  for (int i = 0; i < 5; ++i) mapper.update(lookFrom(room, at, random), at);
+  const GridMap saved = mapper.grid().snapshot();
+  const auto epoch = mapper.epoch();
+  mapper.reset();
+  EXPECT_TRUE(mapper.grid().empty());
+  EXPECT_GT(mapper.epoch(), epoch);
+  mapper.load(saved, at);
+  EXPECT_EQ(mapper.grid().snapshot().occupied.size(), saved.occupied.size());
+  mapper.update(lookFrom(room, at, random), {7, -4, 2});  // odometry starts anywhere
+  EXPECT_NEAR(mapper.pose().map_from_base.x_m, at.x_m, 0.05);
+  EXPECT_NEAR(mapper.pose().map_from_base.yaw_rad, at.yaw_rad, 0.03);
+}
+
+TEST(OdometryFilter, LearnsADriftFromPoses) {
+  OdometryFilter filter({});
+  filter.place({{}, Eigen::Matrix3d::Identity() * 1e-6});
+  Pose2 truth;
+  for (int i = 0; i < 200; ++i) {
+    truth = truth * Pose2{0.1, 0, 0.02};
+    filter.step(
+        {0.1 / 0.97, 0, 0.02 + 0.003});  // 3 % too long, 0.03 rad/m of drift (of the odometer's metres)
+    const Eigen::Matrix3d covariance =
+        (filter.pose().covariance.inverse() + Eigen::Matrix3d::Identity() * 1e4).inverse();
+    filter.correct({truth, covariance});
+  }
+  EXPECT_NEAR(filter.rates()(0), 0.03, 0.006);
+  EXPECT_NEAR(filter.rates()(1) * 0.1 / 0.97 + filter.rates()(2) * 0.023, 0.003, 5e-4);
+}
+
+}  // namespace
+}  // namespace cornerstone
