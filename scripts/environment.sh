@@ -8,4 +8,5 @@ use_build() { # makes the package built in build/ visible to roslaunch, rosrun a
   # shellcheck disable=SC1091
   source build/devel/setup.bash
   set -u
+  export CORNERSTONE_BIN=$PWD/build/devel/lib/cornerstone
 }

@@ -1,18 +1,32 @@
 #include "cornerstone/landmarks/distance_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 namespace cornerstone {
 
-DistanceField::DistanceField(const std::vector<EdgePoint>& edges, const GridGeometry& geometry) {
-  cv::Mat1b away(geometry.rows, geometry.cols, static_cast<unsigned char>(1));
+// Only cells near an edge are ever asked: writing those costs a tenth of a transform of the whole map.
+DistanceField::DistanceField(const std::vector<EdgePoint>& edges, const GridGeometry& geometry)
+    : distances_(geometry.rows, geometry.cols, static_cast<float>(kReachCells + 1)) {
+  std::array<std::array<float, 2 * kReachCells + 1>, 2 * kReachCells + 1> around;
+  for (int r = -kReachCells; r <= kReachCells; ++r)
+    for (int c = -kReachCells; c <= kReachCells; ++c)
+      around[static_cast<std::size_t>(r + kReachCells)][static_cast<std::size_t>(c + kReachCells)] =
+          std::hypot(static_cast<float>(c), static_cast<float>(r));
   for (const EdgePoint& edge : edges) {
     const Cell cell = geometry.cellAt(edge.position_m);
-    if (geometry.contains(cell)) away(cell.row, cell.col) = 0;
+    if (!geometry.contains(cell) || distances_(cell.row, cell.col) == 0) continue;
+    const int first = std::max(cell.col - kReachCells, 0),
+              last = std::min(cell.col + kReachCells, geometry.cols - 1);
+    for (int row = std::max(cell.row - kReachCells, 0);
+         row <= std::min(cell.row + kReachCells, geometry.rows - 1); ++row) {
+      float* to = distances_[row];
+      const float* from =
+          around[static_cast<std::size_t>(row - cell.row + kReachCells)].data() + kReachCells - cell.col;
+      for (int col = first; col <= last; ++col) to[col] = std::min(to[col], from[col]);
+    }
   }
-  cv::distanceTransform(away, distances_, cv::DIST_L2, cv::DIST_MASK_5);
 }
 
 double DistanceField::at(const Eigen::Vector2d& point_cells) const {

@@ -34,28 +34,32 @@ void growCertain(const GridMap& map, cv::Mat1b& states, std::deque<Cell>& front)
 
 // Unit vector towards free space around a cell; zero where free and occupied balance.
 Eigen::Vector2d towardsFree(const cv::Mat1b& states, Cell cell) {
-  static constexpr std::array<double, 3> kWeight{0, 1, -1};  // by CellState
-  Eigen::Vector2d sum(0, 0);
+  static constexpr std::array<int, 3> kWeight{0, 1, -1};  // by CellState
+  const int first = std::max(cell.col - kNormalRadiusCells, 0);
+  const int last = std::min(cell.col + kNormalRadiusCells, states.cols - 1);
+  int x = 0, y = 0;
   for (int r = std::max(cell.row - kNormalRadiusCells, 0);
        r <= std::min(cell.row + kNormalRadiusCells, states.rows - 1); ++r) {
     const unsigned char* row = states[r];
-    for (int c = std::max(cell.col - kNormalRadiusCells, 0);
-         c <= std::min(cell.col + kNormalRadiusCells, states.cols - 1); ++c) {
-      const double weight = kWeight[row[c]];
-      sum.x() += weight * (c - cell.col);
-      sum.y() += weight * (r - cell.row);
+    int in_row = 0;
+    for (int c = first; c <= last; ++c) {
+      const int weight = kWeight[row[c]];
+      x += weight * (c - cell.col);
+      in_row += weight;
     }
+    y += in_row * (r - cell.row);
   }
-  const double length = sum.norm();
-  return length > 0 ? Eigen::Vector2d(sum / length) : sum;
+  const Eigen::Vector2d sum(x, y);
+  return x != 0 || y != 0 ? sum.normalized() : sum;
 }
 
 // One edge for each face between an occupied and a free cell, where the probability crosses one half.
 std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
   std::vector<EdgePoint> faces;
   for (int row = 0; row < states.rows; ++row) {
+    const unsigned char* state = states[row];
     for (int col = 0; col < states.cols; ++col) {
-      if (states(row, col) != kOccupiedCell) continue;
+      if (state[col] != kOccupiedCell) continue;
       for (const Cell step : kNeighbours) {
         const Cell beside{col + step.col, row + step.row};
         if (!map.geometry.contains(beside) || states(beside.row, beside.col) != kFreeCell) continue;

@@ -14,7 +14,8 @@ constexpr int kDegrees = 360;
 constexpr double kWallReach_m = 0.5;
 constexpr double kWallDepth_m = 0.15;  // edges this far beside are another wall's
 constexpr double kSameWallCosine = 0.8;
-constexpr std::size_t kMaxWallEdges = 1500;       // directions of so many edges make a smooth histogram
+constexpr std::size_t kMaxWallEdges = 1500;  // directions of so many edges make a smooth histogram
+constexpr std::size_t kMaxCorners = 60;  // the best fitted of each map: maps with more share plenty of them
 constexpr double kYawReach_rad = 8 * M_PI / 180;  // a corner's arms of ten cells are right to some 5 degrees
 
 // The direction of the wall around an edge: over a metre the cells' staircase no longer matters. Empty: no
@@ -112,8 +113,10 @@ std::vector<double> DirectionMatch::peaks(std::size_t count) const {
 std::vector<Pose2> proposeFromCorners(const std::vector<CornerLandmark>& reference,
                                       const std::vector<CornerLandmark>& current, const DirectionMatch& directions) {
   std::vector<Pose2> poses;
-  for (const CornerLandmark& there : reference) {
-    for (const CornerLandmark& here : current) {
+  for (std::size_t r = 0; r < std::min(reference.size(), kMaxCorners); ++r) {
+    for (std::size_t c = 0; c < std::min(current.size(), kMaxCorners); ++c) {
+      const CornerLandmark& there = reference[r];
+      const CornerLandmark& here = current[c];
       if (there.kind != here.kind) continue;
       const double yaw =
           directions.nearestPeak(wrapAngle(there.pose.yaw_rad - here.pose.yaw_rad), kYawReach_rad);

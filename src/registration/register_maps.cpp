@@ -27,7 +27,8 @@ MapEvidence evidenceOf(const MapView& view, const RegistrationParams& params) {
   Eigen::Vector2d middle(0, 0);
   for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
   std::vector<EdgeSample> samples = samplesOf(edges);
-  EvidenceGrid coarse(view.map, states, edges, params.coarse_cell_m, params.coarse_reach_m);
+  EvidenceGrid coarse(view.map, states, thinEdges(edges, params.coarse_cell_m), params.coarse_cell_m,
+                      params.coarse_reach_m);
   EvidenceGrid fine(view.map, states, edges, params.fine_cell_m, params.fine_reach_m);
   return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
 }
@@ -121,9 +122,14 @@ std::optional<Registration> registerMaps(const MapView& reference, const MapView
   registration.agreement = winner.score.agreement();
   registration.overlap = overlapOf(there.coarse, here.coarse, refined->reference_from_current);
   registration.second_best = best.size() > 1 ? std::max(best[1].value, 0.0) / winner.value : 0;
-  const auto reason = reasonToRefuse({winner.score.agree * params.fine_cell_m, registration.agreement,
-                                      registration.second_best, refined->spread, prior.has_value()},
-                                     params);
+  PoseEvidence evidence;
+  evidence.agreeing_m = winner.score.agree * params.fine_cell_m;
+  evidence.contradicting_m = winner.score.contradict * params.fine_cell_m;
+  evidence.second_best = registration.second_best;
+  evidence.spread = refined->spread;
+  evidence.with_prior = prior.has_value();
+  registration.probability = probabilityRight(evidence);
+  const auto reason = reasonToRefuse(evidence, params);
   if (reason) return refuse(*reason);
   return registration;
 }
@@ -141,9 +147,9 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.degrees("different_deg", params.different_rad);
   visitor.field("refine_reach_m", params.refine_reach_m);
   visitor.field("max_second_best", params.max_second_best);
-  visitor.field("min_agreement", params.min_agreement);
   visitor.field("min_agreeing_m", params.min_agreeing_m);
   visitor.field("min_spread", params.min_spread);
+  visitor.field("min_probability", params.min_probability);
 }
 
 }  // namespace cornerstone

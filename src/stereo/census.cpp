@@ -40,7 +40,8 @@ void censusRow(const cv::Mat1b& padded, int y, int reach_px, unsigned first_bit,
 void CensusTransform::apply(const cv::Mat1b& image, cv::Mat1b& census) {
   cv::GaussianBlur(image, smooth_, {3, 3}, 0, 0, cv::BORDER_REFLECT_101);  // weights 1 2 1
   cv::copyMakeBorder(image, padded_, kReach_px, kReach_px, kReach_px, kReach_px, cv::BORDER_REFLECT_101);
-  cv::copyMakeBorder(smooth_, padded_smooth_, kReach_px, kReach_px, kReach_px, kReach_px, cv::BORDER_REFLECT_101);
+  cv::copyMakeBorder(smooth_, padded_smooth_, kReach_px, kReach_px, kReach_px, kReach_px,
+                     cv::BORDER_REFLECT_101);
   census.create(image.size());
   census.setTo(0);
   for (int y = 0; y < image.rows; ++y) {

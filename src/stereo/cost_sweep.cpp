@@ -57,7 +57,8 @@ void slideRow(const std::uint16_t* sums, const std::uint8_t* entering, const std
 }  // namespace
 
 SecondaryView::SecondaryView(const cv::Mat1b& census, const cv::Point2d& shift)
-    : census_(&census), shift_fixed_(cv::Point2d(shift.x * (1 << kFractionBits), shift.y * (1 << kFractionBits))) {}
+    : census_(&census),
+      shift_fixed_(cv::Point2d(shift.x * (1 << kFractionBits), shift.y * (1 << kFractionBits))) {}
 
 void CostSweep::prepare(const SweepInput& input) {
   input_ = input;
@@ -145,10 +146,11 @@ void CostSweep::fineSums(const Band& band) {
                row_sums_[mirrored(row - 1 - radius_px_, rows)], sums, size_px_.width);
     }
   }
-  for (int row = band.first_sum; row < band.end_sum; ++row) mirrorEnds(fine_sums_[row], border, size_px_.width);
+  for (int row = band.first_sum; row < band.end_sum; ++row)
+    mirrorEnds(fine_sums_[row], border, size_px_.width);
 }
 
-// Columns of 3 and 5 fine windows: outer = S(-2) + .. + S(2), inner = outer + 3 (S(-1) + S(0) + S(1)).
+// Columns of 3 and 5 fine windows: outer = S(-2) + .. + S(2), inner = outer + 2 (S(-1) + S(0) + S(1)).
 void CostSweep::sumColumns(int row) {
   const int rows = size_px_.height, step = input_.window_px;
   std::array<const std::uint16_t*, 2 * kCoarseSteps + 1> sums{};
@@ -160,14 +162,14 @@ void CostSweep::sumColumns(int row) {
     const cv::v_uint16x8 three = cv::v_load(sums[1] + x) + cv::v_load(sums[2] + x) + cv::v_load(sums[3] + x);
     const cv::v_uint16x8 five = three + cv::v_load(sums[0] + x) + cv::v_load(sums[4] + x);
     cv::v_store(outer + x, five);
-    cv::v_store(inner + x, five + three + three + three);
+    cv::v_store(inner + x, five + three + three);
   }
 }
 
 void CostSweep::windowCosts(const Band& band, int disparity_px) {
   const int step = input_.window_px;
   const std::uint16_t *inner = inner_[0], *outer = outer_[0];
-  const cv::v_uint16x8 fine_weight = cv::v_setall_u16(25);
+  const cv::v_uint16x8 fine_weight = cv::v_setall_u16(kFineWeight);
   for (int row = band.first_row; row < band.end_row; ++row) {
     sumColumns(row);
     const std::uint16_t* fine = fine_sums_[row] + kCoarseSteps * step;
@@ -195,13 +197,15 @@ void CostSweep::maskUnseen(short* costs, int row, int disparity_px) const {
   std::fill(costs + std::max(end, 0), costs + size_px_.width, Winners::kNoCost);
 }
 
-// Looks at the costs of `disparity_px` (costs_[1]) between its neighbours (costs_[2] before, costs_[0] after).
+// Looks at the costs of `disparity_px` (costs_[1]) between its neighbours (costs_[2] before, costs_[0]
+// after).
 void CostSweep::keepBest(const Band& band, int disparity_px) {
   const cv::v_int16x8 none = cv::v_setall_s16(Winners::kNoCost);
   const cv::v_int16x8 candidate = cv::v_setall_s16(static_cast<short>(disparity_px));
   for (int row = band.first_row; row < band.end_row; ++row) {
     const short *before = costs_[2][row], *here = costs_[1][row], *after = costs_[0][row];
-    short *best = winners_.cost[row], *second = winners_.second_cost[row], *winner = winners_.disparity_px[row];
+    short *best = winners_.cost[row], *second = winners_.second_cost[row],
+          *winner = winners_.disparity_px[row];
     short *best_before = winners_.cost_before[row], *best_after = winners_.cost_after[row];
     for (int x = 0; x < size_px_.width; x += kLanes) {
       const cv::v_int16x8 b = cv::v_load(before + x), h = cv::v_load(here + x), a = cv::v_load(after + x);

@@ -19,7 +19,9 @@ void requireUsable(const StereoParams& params) {
   requireWithin(params.max_disparity_px, 1, kMaxDisparity_px, "max_disparity_px");
   requireWithin(params.window_px, 3, 7, "window_px");  // larger sums would not fit 16 bits
   requireOdd(params.window_px, "window_px");
-  requireWithin(params.largest_cost_ratio, 0, 1, "largest_cost_ratio");
+  requireWithin(params.smallest_margin_sigmas, 0, 100, "smallest_margin_sigmas");
+  requireWithin(params.smallest_gain_sigmas, 0, 100, "smallest_gain_sigmas");
+  requireWithin(params.smallest_edge_cost_ratio, 0, 100, "smallest_edge_cost_ratio");
   requireWithin(params.left_right_tolerance_px, 0, kMaxDisparity_px, "left_right_tolerance_px");
   requirePositive(params.largest_sigma_px, "largest_sigma_px");
   requireWithin(params.subpixel_support_px, 1, 31, "subpixel_support_px");
@@ -55,15 +57,21 @@ void reject(Disparity& disparity, int y, int x, Rejection why) {
 StereoMatcher::StereoMatcher(const StereoParams& params) : params_(params) { requireUsable(params); }
 
 Disparity StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig) {
-  requireUsable(images, rig);
   Disparity disparity;
+  match(images, rig, disparity);
+  return disparity;
+}
+
+void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity) {
+  requireUsable(images, rig);
   disparity.rig = rig;
   sweep(images, rig);
-  validator_.check(*winners_, sweep_input_, {params_.largest_cost_ratio, params_.left_right_tolerance_px},
+  validator_.check(*winners_, sweep_input_,
+                   {params_.smallest_margin_sigmas, params_.smallest_gain_sigmas,
+                    params_.smallest_edge_cost_ratio, params_.left_right_tolerance_px},
                    disparity.rejection);
   refine(disparity);
   dropSmallSurfaces(disparity);
-  return disparity;
 }
 
 void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) {
@@ -82,8 +90,8 @@ void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) 
 }
 
 void StereoMatcher::refine(Disparity& disparity) {
-  refiner_.refine({winners_, &disparity.rejection}, {params_.subpixel_support_px}, disparity.disparity_px,
-                  disparity.sigma_px);
+  refiner_.refine({winners_, &disparity.rejection, sweep_input_.views.size()}, {params_.subpixel_support_px},
+                  disparity.disparity_px, disparity.sigma_px);
   const auto largest_sigma = static_cast<float>(params_.largest_sigma_px);
   for (int y = 0; y < disparity.rejection.rows; ++y)
     for (int x = 0; x < disparity.rejection.cols; ++x)

@@ -5,16 +5,15 @@
 #include <cstdlib>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "cornerstone/stereo/cost_noise.h"
+
 namespace cornerstone {
 namespace {
 
 constexpr int kLanes = 4;
 constexpr float kNone_px = -1e4F;
-// c of the sigma above, and what the fit does not know (slant, rectification, rounding); measured, see the
-// tests.
-constexpr float kCostNoise = 2.5F;
+// What the fit does not know (slant within the windows, rectification, rounding) is added to every sigma.
 constexpr float kModelSigma_px = 0.06F;
-constexpr float kLeastCost = 25.0F;
 constexpr float kLargestStep_px = 1.0F;
 
 struct Fit {
@@ -22,9 +21,9 @@ struct Fit {
   float sigma_px;
 };
 
-Fit fitOf(float before, float middle, float after) {
+Fit fitOf(float before, float middle, float after, const CostNoise& noise) {
   const float step = std::max(std::max(before, after) - middle, 1.F);
-  return {(before - after) / (2 * step), kCostNoise * std::sqrt(middle + kLeastCost) / step};
+  return {(before - after) / (2 * step), noise.sigmaAt(middle) / (2 * step)};
 }
 
 }  // namespace
@@ -32,6 +31,7 @@ Fit fitOf(float before, float middle, float after) {
 void SubpixelRefiner::fitEach(const SubpixelInput& input) {
   const cv::Mat1b& rejection = *input.rejection;
   const Winners& winners = *input.winners;
+  const CostNoise noise(input.cameras);
   const cv::Size padded(rejection.cols + 2 * radius_px_ + kLanes, rejection.rows + 2 * radius_px_);
   for (cv::Mat1f* plane : {&disparity_px_, &averaged_px_}) {
     plane->create(padded);
@@ -44,7 +44,7 @@ void SubpixelRefiner::fitEach(const SubpixelInput& input) {
   for (int y = 0; y < rejection.rows; ++y) {
     for (int x = 0; x < rejection.cols; ++x) {
       if (rejection(y, x) != 0) continue;
-      const Fit fit = fitOf(winners.cost_before(y, x), winners.cost(y, x), winners.cost_after(y, x));
+      const Fit fit = fitOf(winners.cost_before(y, x), winners.cost(y, x), winners.cost_after(y, x), noise);
       disparity_px_(y + radius_px_, x + radius_px_) =
           static_cast<float>(winners.disparity_px(y, x)) + fit.ahead_px;
       weight_(y + radius_px_, x + radius_px_) = 1 / (fit.sigma_px * fit.sigma_px);

@@ -26,6 +26,7 @@ void addAnswer(const Registration& answer, nlohmann::json& result) {
                  {"covariance", covariance},
                  {"matched", answer.matches.size()},
                  {"rms_m", answer.rms_m},
+                 {"probability", answer.probability},
                  {"agreement", answer.agreement},
                  {"overlap", answer.overlap},
                  {"second_best", answer.second_best}});

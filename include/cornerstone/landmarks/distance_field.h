@@ -1,6 +1,8 @@
 // Distance to the nearest edge over a map (paper, section 3.3), computed once, read at any point by bilinear
 // interpolation with its gradient. Everything in cells (col, row) of the map, whole numbers at cell centres.
-// Beyond the map the field goes on with its border values, and its gradient there is zero across the border.
+// Farther than kReachCells from every edge the field stays at kReachCells + 1: the fit starts well inside
+// that. Beyond the map the field goes on with its border values, and its gradient there is zero across the
+// border.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +13,8 @@
 #include "cornerstone/landmarks/edges.h"
 
 namespace cornerstone {
+
+constexpr int kReachCells = 6;
 
 class DistanceField {
  public:

@@ -23,6 +23,7 @@ struct Registration {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // (x, y, yaw), m and rad
   std::vector<std::pair<int, int>> matches;              // indices (reference corner, current corner)
   double rms_m = 0;                                      // of the matched edges after refinement
+  double probability = 0;                                // of being right, by the model of decision.h
   double agreement = 0;    // share of the edges that both maps can judge which agree
   double overlap = 0;      // share of the current map's known cells that the reference map knows
   double second_best = 0;  // score of the best different pose over this one's: near 1 is ambiguous

@@ -8,27 +8,35 @@
 namespace cornerstone {
 
 struct RegistrationParams {
-  double match_distance_m = 1.0;  // paper: corners farther apart than 1000 mm are not paired
-  // Around a prior, poses of the current map's middle are looked for this far: the paper's limits of
+  // Paper: corners farther apart than 1000 mm are not paired.
+  double match_distance_m = 1.0;
+  // Around a prior, the current map's origin and yaw are looked for this far: twice the paper's limits of
   // odometry.
   double prior_radius_m = 1.0;
   double prior_angle_rad = 20 * M_PI / 180;
-  double coarse_cell_m = 0.2;  // of the grid that scores every proposal
-  double coarse_reach_m =
-      0.5;                   // an edge agrees with another this near: what a corner's yaw error makes of 10 m
-  double fine_cell_m = 0.1;  // of the grid that judges the best proposals
-  double fine_reach_m = 0.25;  // an edge agrees with another this near: maps bend
-  double contradiction =
-      1.0;  // an edge on free space counts as much against a pose as an edge on an edge for it
-  double different_m = 1.0;  // poses farther apart are different answers: well beyond a bent map's play
+  // Squares and reach of the evidence that scores every proposal: an edge agrees with another of its
+  // direction this near, which is what a corner's yaw error makes of 10 m.
+  double coarse_cell_m = 0.2;
+  double coarse_reach_m = 0.5;
+  // Squares and reach of the evidence that judges the best proposals: maps bend by some 0.1 m.
+  double fine_cell_m = 0.1;
+  double fine_reach_m = 0.25;
+  // An edge on free space counts as much against a pose as an edge on an edge counts for it.
+  double contradiction = 1.0;
+  // Poses farther apart than this are different answers: beyond a bent map's play.
+  double different_m = 1.0;
   double different_rad = 10 * M_PI / 180;
-  double refine_reach_m = 0.3;  // first search radius of the refinement; it shrinks to the edges' scatter
-  double max_second_best =
-      0.80;  // score of the best different pose over the winner's, above which nothing stands out
-  double min_agreement = 0.75;   // agreeing share of the edges that the other map can judge
-  double min_agreeing_m = 20.0;  // length of wall that agrees: less may be a coincidence of a few walls
-  double min_spread =
-      0.05;  // weakest over strongest direction of the information: a corridor has next to none
+  // First search radius of the refinement; it shrinks to the edges' scatter.
+  double refine_reach_m = 0.3;
+  // Share of agreeing less contradicting edges of the best different pose over the winner's, above which
+  // nothing stands out.
+  double max_second_best = 0.85;
+  // Length of wall that must agree: less is a corner or two, whatever the figures say.
+  double min_agreeing_m = 8.0;
+  // Weakest over strongest direction of the information: a corridor has next to none along its axis.
+  double min_spread = 0.05;
+  // Of being right, by a model fitted to many pairs (decision.h): a wrong frame is far worse than none.
+  double min_probability = 0.98;
 };
 void describe(ParamVisitor& visitor, RegistrationParams& params);
 

@@ -1,18 +1,19 @@
-// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed over three
-// windows around the pixel of which each pixel of the image counts for less the farther it is, and each pixel keeps
-// its best and second-best local minimum. With S the sum over the fine window (w x w px):
+// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed
+// over three windows around the pixel of which each pixel of the image counts for less the farther it is, and
+// each pixel keeps its best and second-best local minimum. With S the sum over the fine window (w x w px):
 //
-//   cost(x, y, d) = (25 S(x, y) + 3 sum S(x + i w, y + j w; -1..1) + sum S(x + i w, y + j w; -2..2)) / 2
+//   cost(x, y, d) = (32 S(x, y) + 2 sum S(x + i w, y + j w; -1..1) + sum S(x + i w, y + j w; -2..2)) / 2
 //
-// so that the windows of w, 3 w and 5 w count alike. The fine one keeps depth edges in place, the wide ones decide
-// where there is little texture or much noise.
-// Where one camera does not see a pixel the other's cost counts double, so that windows across its border stay fair;
-// where none does, chance is assumed.
+// so that the windows of w, 3 w and 5 w count about alike. The fine one keeps depth edges in place, the wide
+// ones decide where there is little texture or much noise. Where one camera does not see a pixel the other's
+// cost counts double, so that windows across its border stay fair; where none does, chance is assumed.
 #pragma once
 
 #include <array>
 #include <opencv2/core.hpp>
 #include <vector>
+
+#include "cornerstone/stereo/census.h"
 
 namespace cornerstone {
 
@@ -52,6 +53,8 @@ struct Winners {
 
 class CostSweep {
  public:
+  static constexpr int kFineWeight = 32, kInnerWeight = 2, kDivisor = 2;  // of the sum above
+  static constexpr int kWeightSum = kFineWeight + 9 * kInnerWeight + 25;
   const Winners& run(const SweepInput& input);
 
  private:
@@ -73,11 +76,11 @@ class CostSweep {
   SweepInput input_;
   cv::Size size_px_;
   int radius_px_ = 0;
-  cv::Mat1b pair_costs_;                    // of a row, summed over cameras, with borders mirrored
-  cv::Mat1b row_sums_;                      // of pair costs along the fine window
-  cv::Mat_<std::uint16_t> fine_sums_;       // over the fine window, with borders mirrored
-  cv::Mat_<std::uint16_t> inner_, outer_;   // of a row, see sumColumns
-  std::array<cv::Mat1s, 3> costs_;  // of the disparities d, d - 1, d - 2
+  cv::Mat1b pair_costs_;                   // of a row, summed over cameras, with borders mirrored
+  cv::Mat1b row_sums_;                     // of pair costs along the fine window
+  cv::Mat_<std::uint16_t> fine_sums_;      // over the fine window, with borders mirrored
+  cv::Mat_<std::uint16_t> inner_, outer_;  // of a row, see sumColumns
+  std::array<cv::Mat1s, 3> costs_;         // of the disparities d, d - 1, d - 2
   Winners winners_;
 };
 

@@ -26,20 +26,29 @@ struct StereoParams {
   // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px, B 0.12
   // m).
   int max_disparity_px = 32;
-  // Edge of the finest correlation window, odd, 3 to 7; the others are three and five times it. Smaller: noisier
-  // answers. Larger: obstacles grow by up to half of it.
+  // Edge of the finest correlation window, odd, 3 to 7; the others are three and five times it. Smaller:
+  // noisier answers. Larger: obstacles grow by up to half of it.
   int window_px = 7;
-  // A pixel's best cost must be below this share of its second-best local minimum. 0.8: few and safe; 1: all.
-  double largest_cost_ratio = 0.93;
+  // Between a pixel's best and second-best local minimum, in standard deviations of the cost's noise. 0: any
+  // winner will do; 2: safer, a twentieth fewer answers on clean images and a fifth fewer on noisy ones.
+  double smallest_margin_sigmas = 1.5;
+  // The best cost must be this many standard deviations below that of unrelated images: the lowest of a
+  // hundred random costs is 2.5 below. Bare walls fail here.
+  double smallest_gain_sigmas = 6;
+  // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px
+  // (else surfaces grow over their surroundings). 1: any better; 3: nearly every pixel beside an edge is
+  // dropped, thin things with it.
+  double smallest_edge_cost_ratio = 1.5;
   // Two reference pixels that a second camera would see at one place may differ by this much.
   int left_right_tolerance_px = 1;
-  // Answers less certain than this have too little texture (or their cameras disagree): 0.5 px is what
-  // whole-pixel matching is worth.
-  double largest_sigma_px = 0.3;
+  // Answers less certain than this have too little texture (or their cameras disagree): at 0.5 px two in
+  // three are still within half a pixel.
+  double largest_sigma_px = 0.5;
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
   int subpixel_support_px = 7;
-  // A surface with a smaller share of the image's pixels is dropped: 1/500 is 38 px of 160x120.
-  double smallest_surface_share = 0.002;
+  // A surface with a smaller share of the image's pixels is dropped: 0.4% is 77 px of 160x120. Chance makes
+  // blobs of half that on bare walls; a chair leg 4 px wide and 30 high is 120 px.
+  double smallest_surface_share = 0.004;
   // Neighbours that differ by more are on different surfaces.
   double surface_step_px = 1.0;
 };
@@ -51,6 +60,8 @@ class StereoMatcher {
   explicit StereoMatcher(const StereoParams& params);  // throws InputError on parameters out of range
   // Throws InputError when the images are empty or differ in size from each other or from the rig.
   Disparity match(const StereoImages& images, const TrinocularRig& rig);
+  // The same into an answer that is used again and again.
+  void match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
 
  private:
   void sweep(const StereoImages& images, const TrinocularRig& rig);

@@ -2,8 +2,8 @@
 //
 // Census costs fall linearly on both sides of the truth, so two lines of opposite slope through the costs
 // before, at and after the winner cross at it (equiangular fit): with s the steeper step of the two,
-//   d = D + (before - after) / (2 s),   sigma = c sqrt(cost) / s
-// since `cost` counts flipped bits and its noise goes with its root. Then the answers around on the same
+//   d = D + (before - after) / (2 s),   sigma = CostNoise(cost) / (2 s)
+// Then the answers around on the same
 // surface (steps of at most a pixel) are averaged with weights 1 / sigma^2. In px of the reference pair.
 #pragma once
 
@@ -16,6 +16,7 @@ namespace cornerstone {
 struct SubpixelInput {
   const Winners* winners = nullptr;
   const cv::Mat1b* rejection = nullptr;  // only winners with kNone count
+  std::size_t cameras = 2;               // secondary ones: 1 or 2
 };
 
 struct SubpixelParams {

@@ -1,0 +1,27 @@
+// Foreground fattening: a window half over a depth edge matches whichever side has more texture, so surfaces
+// with texture grow over their surroundings. Beside a step of the winners a pixel therefore has to show that
+// it belongs to its own side: in the 3 x 3 px around it the disparity of the other side must cost clearly
+// more than its own.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "cornerstone/stereo/cost_sweep.h"
+
+namespace cornerstone {
+
+class EdgeCheck {
+ public:
+  // Turns kNone into kUniqueness in `rejection` where the other side's cost is below `smallest_cost_ratio`
+  // times the pixel's own. Another side counts only where its own winner holds (kNone).
+  void check(const Winners& winners, const SweepInput& input, double smallest_cost_ratio,
+             cv::Mat1b& rejection);
+
+ private:
+  bool standsOut(const Winners& winners, const SweepInput& input, cv::Point at,
+                 double smallest_cost_ratio) const;
+
+  cv::Mat1b before_;  // rejections as they came in
+};
+
+}  // namespace cornerstone
