@@ -30,10 +30,13 @@ def judge(results):
     files = sorted(results.rglob("*.xml"))
     faults, tests = [], 0
     for file in files:
-        for case in ElementTree.parse(file).getroot().iter("testcase"):
+        root = ElementTree.parse(file).getroot()
+        # A fault outside of a test (in setUpClass) is counted without a test case.
+        if int(root.get("errors", 0)) + int(root.get("failures", 0)) > 0:
+            faults.append(f"{file.name}: {root.get('errors')} errors, {root.get('failures')} failures")
+            faults += [text for text in map(str.strip, root.itertext()) if text]
+        for case in root.iter("testcase"):
             tests += 1
-            for kind in ("failure", "error"):
-                faults += [f"{case.get('name')}: {kind}: {(f.text or f.get('message') or '').strip()}" for f in case.findall(kind)]
             print(f"  {case.get('classname')}.{case.get('name')}")
     # rostest's own file tells only whether the test program ran; the tests are in that program's file.
     if len(files) < 2 or tests < 2:
