@@ -69,9 +69,26 @@ OccupancyGrid::OccupancyGrid(const GridParams& params) : params_(params), scale_
   scale_ = EvidenceScale(params.prior_occupied);
 }
 
+namespace {
+
+// Poses beyond these are faults of odometry: a map of more cells fits neither memory nor a message.
+constexpr double kFarthest_cells = 1e5;  // from the map frame's origin: 5 km at 0.05 m
+constexpr double kMostCells = 1e8;       // 500 m x 500 m at 0.05 m
+
+void requireRoomFor(const Eigen::Vector2d& at_m, const GridGeometry& known) {
+  const Eigen::Vector2d low(known.origin_x_m, known.origin_y_m);
+  const Eigen::Vector2d high = low + known.resolution_m * Eigen::Vector2d(known.cols, known.rows);
+  const Eigen::Vector2d span_cells = (high.cwiseMax(at_m) - low.cwiseMin(at_m)) / known.resolution_m;
+  if (at_m.norm() > kFarthest_cells * known.resolution_m || span_cells.prod() > kMostCells)
+    throw InputError("pose of the range scan lies too far from the map");
+}
+
+}  // namespace
+
 void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, const LookMotion& motion) {
   if (!map_from_base.isFinite() || !scan.base_from_sensor.isFinite())
     throw InputError("pose of the range scan is not finite");
+  requireRoomFor(map_from_base.translation(), geometry());
   if (!finite(scan))
     throw InputError("range scan: a beam is not finite or its interval is not around its range");
   if (std::none_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; })) return;

@@ -6,6 +6,13 @@
 #include "cornerstone/base/errors.h"
 
 namespace cornerstone {
+namespace {
+
+// More cells fit neither memory nor a message: 500 m x 500 m at 0.05 m. Such tiles come from damaged
+// messages.
+constexpr double kMostCells = 1e8;
+
+}  // namespace
 
 TileMap::TileMap(double resolution_m, int tile_cells) : resolution_m_(resolution_m), tile_cells_(tile_cells) {
   requirePositive(resolution_m, "tiles: resolution");
@@ -17,7 +24,21 @@ void TileMap::put(int col, int row, const cv::Mat1f& occupied) {
     throw InputError("tiles: a tile of another size");
   if (col % tile_cells_ != 0 || row % tile_cells_ != 0)
     throw InputError("tiles: a tile between the places of tiles");
+  requireRoomFor(row / tile_cells_, col / tile_cells_);
   tiles_[{row / tile_cells_, col / tile_cells_}] = occupied.clone();
+}
+
+void TileMap::requireRoomFor(int tile_row, int tile_col) const {
+  double first_row = tile_row, last_row = tile_row, first_col = tile_col, last_col = tile_col;
+  for (const auto& [place, tile] : tiles_) {
+    first_row = std::min<double>(first_row, place.first);
+    last_row = std::max<double>(last_row, place.first);
+    first_col = std::min<double>(first_col, place.second);
+    last_col = std::max<double>(last_col, place.second);
+  }
+  const double tile_area = static_cast<double>(tile_cells_) * tile_cells_;
+  if ((last_row - first_row + 1) * (last_col - first_col + 1) * tile_area > kMostCells)
+    throw InputError("tiles: a tile too far from the others");
 }
 
 GridMap TileMap::assemble() const {

@@ -85,7 +85,9 @@ class RegistrationNodelet : public nodelet::Nodelet {
     robot.subscriber =
         getNodeHandle().subscribe<MapTiles>(topic, 100, [this, &robot, topic](const MapTilesConstPtr& tiles) {
           try {
-            if (robot.tiles.take(*tiles)) tracker_->lose(topic + ": the map began anew");
+            if (!robot.tiles.take(*tiles)) return;
+            tracker_->lose(topic + ": the map began anew");
+            last_broadcast_ = ros::Time();  // maps begin anew when time has jumped back, too
           } catch (const InputError& error) {
             diagnostics_->dropped(topic + ": " + error.what());
           }

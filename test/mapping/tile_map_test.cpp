@@ -39,5 +39,15 @@ TEST(TileMap, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(tiles.assemble().occupied.empty());
 }
 
+TEST(TileMap, RefusesATileTooFarAwayToHold) {
+  TileMap tiles(0.05, 4);
+  tiles.put(0, 0, tileOf(0.2f));
+  EXPECT_THROW(tiles.put(40000, 40000, tileOf(0.2f)), InputError);
+  EXPECT_THROW(tiles.put(-2147483648, 2147483644, tileOf(0.2f)), InputError);
+  EXPECT_EQ(tiles.assemble().geometry.cols, 4);
+  tiles.put(0, 4000, tileOf(0.3f));
+  EXPECT_EQ(tiles.assemble().geometry.rows, 4004);
+}
+
 }  // namespace
 }  // namespace cornerstone

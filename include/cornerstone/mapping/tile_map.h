@@ -15,7 +15,8 @@ class TileMap {
   // Both must be positive: InputError otherwise.
   TileMap(double resolution_m, int tile_cells);
   // occupied: tile_cells x tile_cells; col, row: its first cell, in cells from the map frame's origin, a
-  // multiple of tile_cells. InputError otherwise, and nothing changes.
+  // multiple of tile_cells, so near the others that one map can hold them. InputError otherwise, and nothing
+  // changes.
   void put(int col, int row, const cv::Mat1f& occupied);
   // All tiles as one map; what no tile covers was never seen. Empty map: no tile yet.
   GridMap assemble() const;
@@ -23,6 +24,8 @@ class TileMap {
   int tileCells() const { return tile_cells_; }
 
  private:
+  void requireRoomFor(int tile_row, int tile_col) const;
+
   double resolution_m_;
   int tile_cells_;
   std::map<std::pair<int, int>, cv::Mat1f> tiles_;  // by (row, col) in tiles

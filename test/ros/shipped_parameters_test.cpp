@@ -1,0 +1,73 @@
+// Every file of config/ is the defaults of its struct: who reads the one knows the other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "cornerstone/ros/nodelet_params.h"
+#include "cornerstone/ros/simulation_messages.h"
+
+namespace cornerstone {
+namespace {
+
+const std::string kConfig = std::string(CORNERSTONE_SOURCE_DIR) + "/config/";
+
+// Files may round: a struct's 2 rad/s is a file's 115 degrees a second.
+double toleranceFor(const std::string& key) { return key.find("_deg") == std::string::npos ? 1e-9 : 5e-3; }
+
+void expectEqual(const YAML::Node& shipped, const YAML::Node& defaults, const std::string& key) {
+  ASSERT_EQ(shipped.Type(), defaults.Type()) << key;
+  if (shipped.IsMap()) {
+    ASSERT_EQ(shipped.size(), defaults.size()) << key;
+    for (const auto& member : defaults) {
+      const auto name = member.first.as<std::string>();
+      expectEqual(shipped[name], member.second, key + "/" + name);
+    }
+    return;
+  }
+  if (shipped.IsSequence()) {
+    EXPECT_EQ(shipped.as<std::vector<std::string>>(), defaults.as<std::vector<std::string>>()) << key;
+    return;
+  }
+  double number = 0, expected = 0;
+  if (YAML::convert<double>::decode(shipped, number) && YAML::convert<double>::decode(defaults, expected))
+    EXPECT_NEAR(number, expected, toleranceFor(key) * std::max(1e-12, std::abs(expected))) << key;
+  else
+    EXPECT_EQ(shipped.as<std::string>(), defaults.as<std::string>()) << key;
+}
+
+template <typename Params>
+void expectDefaults(const std::string& file) {
+  SCOPED_TRACE(file);
+  const YAML::Node shipped = YAML::LoadFile(kConfig + file);
+  expectEqual(writeParams(readParams<Params>(shipped, file)), writeParams(Params{}), file);
+}
+
+TEST(ShippedParameters, EveryFileIsTheDefaultsOfItsStruct) {
+  expectDefaults<TrinocularStereoParams>("stereo.yaml");
+  expectDefaults<OccupancyMapperParams>("mapper.yaml");
+  expectDefaults<RegistrationNodeletParams>("registration.yaml");
+  expectDefaults<SimulatorParams>("simulator.yaml");
+}
+
+TEST(ShippedParameters, NoFileIsForgotten) {
+  std::set<std::string> found;
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig))
+    found.insert(entry.path().filename());
+  EXPECT_EQ(found,
+            (std::set<std::string>{"mapper.yaml", "registration.yaml", "simulator.yaml", "stereo.yaml"}));
+}
+
+TEST(ShippedParameters, TheComparisonSeesASmallDifference) {
+  TrinocularStereoParams changed;
+  changed.stereo.largest_cost_ratio *= 1 + 1e-6;
+  const YAML::Node ours = writeParams(TrinocularStereoParams{}), theirs = writeParams(changed);
+  EXPECT_GT(std::abs(ours["stereo"]["largest_cost_ratio"].as<double>() -
+                     theirs["stereo"]["largest_cost_ratio"].as<double>()),
+            toleranceFor("largest_cost_ratio"));
+}
+
+}  // namespace
+}  // namespace cornerstone
