@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "cornerstone/registration/line_cost.h"
 
@@ -15,6 +16,7 @@ namespace {
 using Adapter = ceres::TinySolverCostFunctionAdapter<Eigen::Dynamic, 3>;
 
 constexpr std::size_t kMinPartners = 10;
+constexpr double kTile_m = 3;  // about a wall
 
 // Partners of one map's edges in the other; `forward`: the edges are the current map's.
 void addPairs(const EdgeIndex& from, const EdgeIndex& to, const Pose2& to_from_from, double reach_m,
@@ -58,11 +60,34 @@ Pose2 poseAt(const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m) {
   return {shift.x(), shift.y(), turn.yaw_rad};
 }
 
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+// Neighbouring edges err together: where the maps bend, by whole walls. The scatter of the sums J'r over
+// squares of some metres is what the pose's covariance must carry (the cluster-robust covariance of least
+// squares).
+Eigen::Matrix3d scatterOfTiles(const std::vector<LinePair>& pairs, const Jacobian& jacobian,
+                               const Eigen::VectorXd& residuals) {
+  std::map<std::pair<int, int>, Eigen::Vector3d> sums;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Eigen::Vector2d square = pairs[i].current_m / kTile_m;
+    const auto place =
+        sums.try_emplace({static_cast<int>(std::floor(square.y())), static_cast<int>(std::floor(square.x()))},
+                         Eigen::Vector3d::Zero())
+            .first;
+    const auto row = static_cast<Eigen::Index>(i);
+    place->second += jacobian.row(row).transpose() * residuals[row];
+  }
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const auto& entry : sums) scatter += entry.second * entry.second.transpose();
+  const auto tiles = static_cast<double>(sums.size());
+  return scatter * tiles / std::max(tiles - 3, 1.0);  // three parameters are fitted to them
+}
+
 void judge(const std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m,
            RefinedPose& refined) {
   const auto count = static_cast<Eigen::Index>(pairs.size());
   Eigen::VectorXd residuals(count);
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> jacobian(count, 3);
+  Jacobian jacobian(count, 3);
   const double* block = x.data();
   double* jacobians[] = {jacobian.data()};
   LineCost(pairs).Evaluate(&block, residuals.data(), jacobians);
@@ -73,8 +98,10 @@ void judge(const std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const E
   const Eigen::Matrix3d information = jacobian.transpose() * jacobian;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(information.topLeftCorner<2, 2>());
   refined.spread = axes.eigenvalues()[0] / axes.eigenvalues()[1];
+  const Eigen::Matrix3d inverse = information.inverse();
   // Both maps' edges see the same walls, so each pair counts half.
-  const Eigen::Matrix3d at_pivot = 2 * refined.rms_m * refined.rms_m * information.inverse();
+  const Eigen::Matrix3d at_pivot = 2 * refined.rms_m * refined.rms_m * inverse +
+                                   inverse * scatterOfTiles(pairs, jacobian, residuals) * inverse;
   // From the pivot to the current map's origin.
   const Eigen::Vector2d lever = Pose2{0, 0, x[2]} * Eigen::Vector2d(-pivot_m);
   Eigen::Matrix3d by_pivot = Eigen::Matrix3d::Identity();

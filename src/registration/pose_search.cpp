@@ -10,8 +10,9 @@ namespace {
 constexpr std::size_t kGlanceSamples = 50;
 constexpr std::size_t kGlanceKept = 400;
 constexpr std::size_t kCoarseSamples = 200;  // scores scatter by a few per cent
-constexpr std::size_t kCoarseKept = 40;
-constexpr std::size_t kClimbed = 12;
+constexpr std::size_t kCoarseKept = 60;
+constexpr std::size_t kClimbed = 20;
+constexpr std::size_t kCoarseClimbSamples = 120;
 constexpr std::size_t kGlanceFineSamples = 150;
 constexpr std::size_t kFineClimbSamples = 300;
 constexpr std::size_t kFineSamples = 1000;
@@ -108,9 +109,9 @@ std::vector<Hypothesis> searchPoses(const MapEvidence& reference, const MapEvide
   poses.resize(std::min(poses.size(), kGlanceKept));
   for (Hypothesis& h : poses) h = judge(h.reference_from_current, ScoreLevel::kCoarse, kCoarseSamples);
   sortBestFirst(poses);
-  poses = bestDifferent(poses, middle, 0.5 * params.different_m, 0.5 * params.different_rad, kCoarseKept);
+  poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kCoarseKept);
 
-  Climb climb{reference, current, ScoreLevel::kCoarse, kCoarseSamples, params.contradiction};
+  Climb climb{reference, current, ScoreLevel::kCoarse, kCoarseClimbSamples, params.contradiction};
   for (Hypothesis& h : poses) h = climb.from(h, {0.4, 4 * M_PI / 180, 3});
   poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kCoarseKept);
 

@@ -6,6 +6,7 @@
 #include "cornerstone/registration/corner_matching.h"
 #include "cornerstone/registration/decision.h"
 #include "cornerstone/registration/edge_refinement.h"
+#include "cornerstone/registration/elastic_score.h"
 #include "cornerstone/registration/pose_search.h"
 #include "cornerstone/registration/proposals.h"
 #include "cornerstone/registration/wall_search.h"
@@ -87,6 +88,23 @@ void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const Reg
   hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), is_far), hypotheses.end());
 }
 
+// Puts the hypotheses in the order of their elastic scores, best first, and returns those.
+std::vector<PoseScore> scoreAndSort(const MapEvidence& there, const MapEvidence& here,
+                                    std::vector<Hypothesis>& hypotheses) {
+  std::vector<std::pair<PoseScore, Hypothesis>> scored;
+  for (const Hypothesis& h : hypotheses)
+    scored.emplace_back(scoreElastic(there, here, h.reference_from_current, {}), h);
+  std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) {
+    return a.first.agree - a.first.contradict > b.first.agree - b.first.contradict;
+  });
+  std::vector<PoseScore> scores;
+  for (std::size_t i = 0; i < scored.size(); ++i) {
+    scores.push_back(scored[i].first);
+    hypotheses[i] = scored[i].second;
+  }
+  return scores;
+}
+
 }  // namespace
 
 std::optional<Registration> registerMaps(const MapView& reference, const MapView& current,
@@ -103,6 +121,7 @@ std::optional<Registration> registerMaps(const MapView& reference, const MapView
       prior ? proposeAround(*prior, reference, current, params) : propose(reference, current, there, here);
   std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
   if (prior) keepNear(best, *prior, params);
+  const std::vector<PoseScore> scores = scoreAndSort(there, here, best);
   if (best.empty() || best.front().value <= 0) return refuse("no pose agrees with both maps");
   const Hypothesis& winner = best.front();
 
@@ -119,15 +138,12 @@ std::optional<Registration> registerMaps(const MapView& reference, const MapView
   registration.matches = pairNearest(reference.landmarks.corners, current.landmarks.corners,
                                      refined->reference_from_current, kMatched);
   registration.rms_m = refined->rms_m;
-  registration.agreement = winner.score.agreement();
   registration.overlap = overlapOf(there.coarse, here.coarse, refined->reference_from_current);
-  registration.second_best = best.size() > 1 ? std::max(best[1].value, 0.0) / winner.value : 0;
-  PoseEvidence evidence;
-  evidence.agreeing_m = winner.score.agree * params.fine_cell_m;
-  evidence.contradicting_m = winner.score.contradict * params.fine_cell_m;
-  evidence.second_best = registration.second_best;
+  PoseEvidence evidence = weighScores(scores, params.fine_cell_m);
   evidence.spread = refined->spread;
   evidence.with_prior = prior.has_value();
+  registration.agreement = scores.front().agreement();
+  registration.second_best = evidence.second_best;
   registration.probability = probabilityRight(evidence);
   const auto reason = reasonToRefuse(evidence, params);
   if (reason) return refuse(*reason);
@@ -146,8 +162,9 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("different_m", params.different_m);
   visitor.degrees("different_deg", params.different_rad);
   visitor.field("refine_reach_m", params.refine_reach_m);
-  visitor.field("max_second_best", params.max_second_best);
+  visitor.field("max_clear_rival", params.max_clear_rival);
   visitor.field("min_agreeing_m", params.min_agreeing_m);
+  visitor.field("min_agreeing_with_prior_m", params.min_agreeing_with_prior_m);
   visitor.field("min_spread", params.min_spread);
   visitor.field("min_probability", params.min_probability);
 }

@@ -14,13 +14,14 @@ struct Bounds {
 
 // A map turned by a yaw, and where each of its parts falls on the transform's grid.
 struct Turned {
-  const MapEvidence& evidence;
-  std::vector<Opinion> opinions;
+  const std::vector<EdgeSample>& samples;
+  const std::vector<Opinion>& opinions;
+  double opinion_cell_m;
   Eigen::Matrix2f rotation;
 
-  Turned(const MapEvidence& map, double yaw)
-      : evidence(map), opinions(map.coarse.opinions()), rotation(Pose2{0, 0, yaw}.rotation().cast<float>()) {}
-
+  Turned by(double yaw) const {
+    return {samples, opinions, opinion_cell_m, Pose2{0, 0, yaw}.rotation().cast<float>()};
+  }
   Bounds bounds() const {
     Bounds bounds;
     bool first = true;
@@ -46,9 +47,8 @@ Spectra transform(const Turned& map, const Eigen::Vector2f& low, float square_m,
     return grid(std::clamp(static_cast<int>(cell.y() + 0.5f), 0, size - 1),
                 std::clamp(static_cast<int>(cell.x() + 0.5f), 0, size - 1));
   };
-  for (const EdgeSample& sample : map.evidence.samples) at(edges, sample.position_m) += 1;
-  const auto share =
-      static_cast<float>(std::pow(map.evidence.coarse.cellSize() / square_m, 2) / kFullEvidence);
+  for (const EdgeSample& sample : map.samples) at(edges, sample.position_m) += 1;
+  const auto share = static_cast<float>(std::pow(map.opinion_cell_m / square_m, 2) / kFullEvidence);
   for (const Opinion& opinion : map.opinions)
     at(says, opinion.centre_m) += share * static_cast<float>(opinion.evidence);
   Spectra spectra;
@@ -87,11 +87,14 @@ std::vector<cv::Point> highest(const cv::Mat1f& scores, std::size_t count) {
 
 std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvidence& current,
                                     const std::vector<double>& yaws, const WallSearchOptions& options) {
-  const Turned there(reference, 0);
+  const std::vector<Opinion> reference_says = reference.coarse.opinions(),
+                             current_says = current.coarse.opinions();
+  const Turned there = Turned{reference.samples, reference_says, reference.coarse.cellSize(), {}}.by(0);
+  const Turned unturned = Turned{current.samples, current_says, current.coarse.cellSize(), {}}.by(0);
   const Bounds there_bounds = there.bounds();
   const float there_size_m = (there_bounds.high - there_bounds.low).maxCoeff();
   // Turned by any yaw the current map is no larger than its diagonal.
-  const Bounds here_bounds = Turned(current, 0).bounds();
+  const Bounds here_bounds = unturned.bounds();
   const float needed_m = there_size_m + (here_bounds.high - here_bounds.low).norm();
   const float square_m = std::max(static_cast<float>(options.square_m),
                                   needed_m / static_cast<float>(options.max_size_squares - 4));
@@ -99,7 +102,7 @@ std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvide
   const Spectra fixed = transform(there, there_bounds.low, square_m, size);
   std::vector<Pose2> poses;
   for (const double yaw : yaws) {
-    const Turned here(current, yaw);
+    const Turned here = unturned.by(yaw);
     const Eigen::Vector2f low = here.bounds().low;
     const Spectra moving = transform(here, low, square_m, size);
     cv::Mat one, other;

@@ -43,8 +43,8 @@ TEST(CornerCost, ResidualsAreDistancesAndStabiliser) {
   std::vector<double> residuals(8, std::numeric_limits<double>::quiet_NaN());
   ASSERT_EQ(cost.num_residuals(), 8);
   ASSERT_TRUE(cost.Evaluate(&block, residuals.data(), nullptr));
-  const std::vector<double> expected{3, 3, 3,   5,
-                                     7, 0, 0.2, 0};  // one arm along x, the other up; 0.1 * (x - x_prev)
+  const std::vector<double> expected{2, 2, 2,   4,
+                                     6, 0, 0.2, 0};  // one arm along x, the other up; 0.1 * (x - x_prev)
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(residuals[i], expected[i], 1e-5) << i;
 }
 

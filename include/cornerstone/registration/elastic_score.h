@@ -1,6 +1,6 @@
-// How well a pose agrees with both maps when each neighbourhood of some metres may give way a little: maps bend over a
-// building, so that no rigid pose fits everywhere, while a wrong pose lays whole walls on free space and stays wrong.
-// Counted as in pose_score.h, on the fine grids.
+// How well a pose agrees with both maps when each neighbourhood of some metres may give way a little: maps
+// bend over a building, so that no rigid pose fits everywhere, while a wrong pose lays whole walls on free
+// space and stays wrong. Counted as in pose_score.h, on the fine grids.
 #pragma once
 
 #include "cornerstone/registration/pose_score.h"
@@ -14,7 +14,7 @@ struct ElasticOptions {
   std::size_t max_samples = 1000;  // of each map
 };
 
-PoseScore scoreElastic(const MapEvidence& reference, const MapEvidence& current, const Pose2& reference_from_current,
-                       const ElasticOptions& options);
+PoseScore scoreElastic(const MapEvidence& reference, const MapEvidence& current,
+                       const Pose2& reference_from_current, const ElasticOptions& options);
 
 }  // namespace cornerstone

@@ -28,15 +28,17 @@ struct RegistrationParams {
   double different_rad = 10 * M_PI / 180;
   // First search radius of the refinement; it shrinks to the edges' scatter.
   double refine_reach_m = 0.3;
-  // Share of agreeing less contradicting edges of the best different pose over the winner's, above which
-  // nothing stands out.
-  double max_second_best = 0.85;
-  // Length of wall that must agree: less is a corner or two, whatever the figures say.
-  double min_agreeing_m = 8.0;
+  // Value of a different pose that next to nothing contradicts over the winner's, above which neither is
+  // believed: like offices in a row differ in how much of them the maps share, and in nothing else.
+  double max_clear_rival = 0.3;
+  // Length of wall that must agree: walls of different buildings agree over 25 m by coincidence, a corner or
+  // two near a prior over 4 m.
+  double min_agreeing_m = 30.0;
+  double min_agreeing_with_prior_m = 8.0;
   // Weakest over strongest direction of the information: a corridor has next to none along its axis.
   double min_spread = 0.05;
   // Of being right, by a model fitted to many pairs (decision.h): a wrong frame is far worse than none.
-  double min_probability = 0.98;
+  double min_probability = 0.9;
 };
 void describe(ParamVisitor& visitor, RegistrationParams& params);
 
