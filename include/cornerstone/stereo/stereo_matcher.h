@@ -27,7 +27,7 @@ struct StereoParams {
   int max_disparity_px = 32;
   // Edge of the finest correlation window, odd, 3 to 7; the others are three and five times it. Smaller:
   // noisier answers. Larger: obstacles grow by up to half of it.
-  int window_px = 7;
+  int window_px = 5;
   // Between a pixel's best and second-best local minimum, in standard deviations of the cost's noise. 0: any
   // winner will do; 2: safer, a twentieth fewer answers on clean images and a fifth fewer on noisy ones.
   double smallest_margin_sigmas = 1.5;
@@ -48,7 +48,7 @@ struct StereoParams {
   // three are still within that.
   double largest_sigma_px = 0.4;
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
-  int subpixel_support_px = 5;
+  int subpixel_support_px = 3;
   // A surface with a smaller share of the image's pixels is dropped: 0.4% is 77 px of 160x120. Chance makes
   // blobs of half that on bare walls; a chair leg 4 px wide and 30 high is 120 px.
   double smallest_surface_share = 0.004;
