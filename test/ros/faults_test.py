@@ -2,7 +2,6 @@
 """One robot's chain under faults. The tests share the running chain and go in the order of their names."""
 import copy
 import os
-import sys
 import tempfile
 import unittest
 
@@ -170,5 +169,4 @@ class Faults(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    import rostest
-    rostest.rosrun("cornerstone", "faults", Faults, sys.argv)
+    chain.run("faults", Faults)
