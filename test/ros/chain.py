@@ -66,10 +66,10 @@ class Player:
         for path in bags:
             with rosbag.Bag(path) as bag:
                 self.topics |= set(bag.get_type_and_topic_info().topics)
-        command = ["rosbag", "play", "--clock", "--hz=100", "--pause", "--quiet", "-r", str(rate), *extra, *bags,
-                   "__name:=player"]
-        # A group of its own: stopping it must stop the player behind the rosbag script, too.
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, start_new_session=True)
+        # rosrun becomes the player itself, and it ends with the test even when that is killed.
+        command = ["setpriv", "--pdeathsig", "TERM", "rosrun", "rosbag", "play", "--clock", "--hz=100", "--pause", "--quiet",
+                   "-r", str(rate), *extra, *bags, "__name:=player"]
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
 
     def start(self, expected):
         """expected: {topic of the bags: names of the nodes that must be connected before the first message is played}."""
@@ -94,7 +94,7 @@ class Player:
 
     def stop(self):
         if self.process.poll() is None:
-            os.killpg(self.process.pid, signal.SIGINT)
+            self.process.send_signal(signal.SIGINT)
             self.process.wait(20)
 
 
@@ -241,6 +241,15 @@ class _Result(unittest.TextTestResult):
     def addSuccess(self, test):
         super().addSuccess(test)
         self.passed.append(test)
+
+    # At once, so that a test that hangs later does not hide it.
+    def addFailure(self, test, err):
+        super().addFailure(test, err)
+        self.stream.writeln(self.failures[-1][1])
+
+    def addError(self, test, err):
+        super().addError(test, err)
+        self.stream.writeln(self.errors[-1][1])
 
 
 def run(name, case):

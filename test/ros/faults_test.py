@@ -11,6 +11,7 @@ from cornerstone.srv import MapFile
 from nav_msgs.srv import GetMap
 from std_srvs.srv import Trigger
 from stereo_msgs.msg import DisparityImage
+from tf2_msgs.msg import TFMessage
 
 import chain
 
@@ -59,7 +60,7 @@ class Faults(unittest.TestCase):
         rospy.init_node("faults_test")
         cls.bag, cls.rate = rospy.myargv()[1:3]
         cls.folder = tempfile.TemporaryDirectory()
-        cls.recorder = chain.Recorder(dict(chain.robot_topics("a"), **{"/a/disparity": DisparityImage}))
+        cls.recorder = chain.Recorder(dict(chain.robot_topics("a"), **{"/a/disparity": DisparityImage, "/tf": TFMessage}))
         cls.diagnostics = chain.Diagnostics()
         chain.wait_for_robots(["a"])
 
