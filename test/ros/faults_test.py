@@ -54,6 +54,10 @@ def nan_odometry(topic, message):
     return message
 
 
+# Diagnostics come once a second: a report may lack the last ten scans of a recording of 120.
+LATE_SCANS = 15
+
+
 class Faults(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -133,7 +137,7 @@ class Faults(unittest.TestCase):
         # What odometry of the play before had left in tf ended with it.
         after = self.diagnostics.count("/a/mapper", "dropped"), self.diagnostics.count("/a/mapper", "processed")
         self.assertGreater(after[0], before[0] + 20)
-        self.assertLess(after[1], before[1] + 5)
+        self.assertLess(after[1], before[1] + LATE_SCANS)
         causes = [key for key in self.diagnostics.of("/a/mapper") if key.startswith("dropped: ")]
         self.assertTrue(any("a/odom -> a/base_link" in cause for cause in causes), causes)
 
@@ -141,7 +145,7 @@ class Faults(unittest.TestCase):
         before = self.diagnostics.count("/a/mapper", "processed")
         dropped = self.diagnostics.count("/a/mapper", "dropped")
         self.play_changed(nan_odometry)
-        self.assertLess(self.diagnostics.count("/a/mapper", "processed"), before + 5)
+        self.assertLess(self.diagnostics.count("/a/mapper", "processed"), before + LATE_SCANS)
         self.assertGreater(self.diagnostics.count("/a/mapper", "dropped"), dropped + 20)
 
     def complaint_about(self, set_fields):
