@@ -24,6 +24,19 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.field("max_contradictions", params.max_contradictions);
 }
 
+namespace {
+
+// Odometry that claims more has gone astray; cells are counted in 32 bits and MRPT's in floats.
+constexpr double kFarthest_m = 5000;
+
+void requireSane(const Pose2& odom_from_base) {
+  if (!odom_from_base.isFinite()) throw InputError("odometry: odom_from_base is not finite");
+  if (odom_from_base.translation().norm() > kFarthest_m)
+    throw InputError("odometry: odom_from_base lies too far from the frame's origin (5 km at most)");
+}
+
+}  // namespace
+
 Mapper::Mapper(const MapperParams& params) : params_(params), grid_(params.grid), filter_(params.odometry) {
   requireValid(params.fit);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
@@ -59,7 +72,7 @@ double Mapper::newShare(const RangeScan& scan) const {
 }
 
 MapperUpdate Mapper::update(const RangeScan& scan, const Pose2& odom_from_base) {
-  if (!odom_from_base.isFinite()) throw InputError("odometry: odom_from_base is not finite");
+  requireSane(odom_from_base);
   predict(odom_from_base);
   ScanFit fit;
   if (params_.fit_scans) fit = fitScan(scan, grid_, {filter_.pose(), newShare(scan)}, params_.fit);

@@ -11,7 +11,8 @@ StageDiagnostics::StageDiagnostics(ros::NodeHandle node, ros::NodeHandle private
     : name_(private_node.getNamespace()), updater_(node, private_node, name_) {
   updater_.setHardwareID("none");
   updater_.add(stage, this, &StageDiagnostics::report);
-  timer_ = node.createTimer(ros::Duration(1.0), [this](const ros::TimerEvent&) { updater_.update(); });
+  // Forced: update() keeps a time of its own and would be silent after a jump back in time.
+  timer_ = node.createTimer(ros::Duration(1.0), [this](const ros::TimerEvent&) { updater_.force_update(); });
 }
 
 void StageDiagnostics::processed(double seconds) {

@@ -4,10 +4,14 @@ import math
 import os
 import signal
 import subprocess
+import sys
 import threading
 import time
+import unittest
+import xml.etree.ElementTree as ElementTree
 import xmlrpc.client
 
+import rosbag
 import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -58,18 +62,24 @@ class Player:
 
     def __init__(self, bags, rate, extra=()):
         self.name = "/player"
-        command = ["rosbag", "play", "--clock", "--hz=100", "--pause", "--quiet", "-r", str(rate), *extra, *bags,
-                   "__name:=player"]
-        # A group of its own: stopping it must stop the player behind the rosbag script, too.
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, start_new_session=True)
+        self.topics = {"/clock"}
+        for path in bags:
+            with rosbag.Bag(path) as bag:
+                self.topics |= set(bag.get_type_and_topic_info().topics)
+        # rosrun becomes the player itself, and it ends with the test even when that is killed.
+        command = ["setpriv", "--pdeathsig", "TERM", "rosrun", "rosbag", "play", "--clock", "--hz=100", "--pause", "--quiet",
+                   "-r", str(rate), *extra, *bags, "__name:=player"]
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
 
     def start(self, expected):
-        """expected: {topic: names of the nodes that must be connected before the first message is played}."""
+        """expected: {topic of the bags: names of the nodes that must be connected before the first message is played}."""
+        expected = {topic: set(nodes) for topic, nodes in expected.items() if topic in self.topics}
+
         def all_there():
             if self.process.poll() is not None:
                 raise AssertionError("rosbag play ended before it was started")
             try:
-                return all(set(nodes) <= set(connected(self.name, topic)) for topic, nodes in expected.items())
+                return all(nodes <= set(connected(self.name, topic)) for topic, nodes in expected.items())
             except (rosgraph.MasterException, xmlrpc.client.Error, OSError):
                 return False
         wait_until(all_there, f"connections of {expected}", 60)
@@ -84,7 +94,7 @@ class Player:
 
     def stop(self):
         if self.process.poll() is None:
-            os.killpg(self.process.pid, signal.SIGINT)
+            self.process.send_signal(signal.SIGINT)
             self.process.wait(20)
 
 
@@ -219,3 +229,43 @@ def robot_topics(robot):
             f"/{robot}/map_metadata": MapMetaData, f"/{robot}/map_tiles": MapTiles,
             f"/{robot}/landmarks": CornerArray, f"/{robot}/stereo_scan": LaserScan,
             f"/{robot}/ground_truth": Odometry}
+
+
+class _Result(unittest.TextTestResult):
+    """Remembers what passed, so that the report names every test; rosunit's own loses faults of setUpClass."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.passed = []
+
+    def addSuccess(self, test):
+        super().addSuccess(test)
+        self.passed.append(test)
+
+    # At once, so that a test that hangs later does not hide it.
+    def addFailure(self, test, err):
+        super().addFailure(test, err)
+        self.stream.writeln(self.failures[-1][1])
+
+    def addError(self, test, err):
+        super().addError(test, err)
+        self.stream.writeln(self.errors[-1][1])
+
+
+def run(name, case):
+    """The main of a system test: runs the case and writes the report where rostest wants it."""
+    target = next(word.split(":", 1)[1] for word in sys.argv if word.startswith("--gtest_output=xml:"))
+    suite = unittest.defaultTestLoader.loadTestsFromTestCase(case)
+    result = unittest.TextTestRunner(verbosity=2, resultclass=_Result).run(suite)
+    root = ElementTree.Element("testsuite", name=name, tests=str(result.testsRun), time="0",
+                               errors=str(len(result.errors)), failures=str(len(result.failures)))
+    outcomes = [(test, None, "") for test in result.passed]
+    outcomes += [(test, "failure", text) for test, text in result.failures]
+    outcomes += [(test, "error", text) for test, text in result.errors]
+    for test, kind, text in outcomes:
+        entry = ElementTree.SubElement(root, "testcase", classname=name, name=str(test).split(" ")[0], time="0")
+        if kind:
+            ElementTree.SubElement(entry, kind, type=kind, message=text.strip().splitlines()[-1]).text = text
+    os.makedirs(os.path.dirname(target), exist_ok=True)
+    ElementTree.ElementTree(root).write(target)
+    sys.exit(0 if result.wasSuccessful() else 1)

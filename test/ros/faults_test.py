@@ -2,7 +2,6 @@
 """One robot's chain under faults. The tests share the running chain and go in the order of their names."""
 import copy
 import os
-import sys
 import tempfile
 import unittest
 
@@ -12,6 +11,7 @@ from cornerstone.srv import MapFile
 from nav_msgs.srv import GetMap
 from std_srvs.srv import Trigger
 from stereo_msgs.msg import DisparityImage
+from tf2_msgs.msg import TFMessage
 
 import chain
 
@@ -54,13 +54,17 @@ def nan_odometry(topic, message):
     return message
 
 
+# Diagnostics come once a second: a report may lack the last ten scans of a recording of 120.
+LATE_SCANS = 15
+
+
 class Faults(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("faults_test")
         cls.bag, cls.rate = rospy.myargv()[1:3]
         cls.folder = tempfile.TemporaryDirectory()
-        cls.recorder = chain.Recorder(dict(chain.robot_topics("a"), **{"/a/disparity": DisparityImage}))
+        cls.recorder = chain.Recorder(dict(chain.robot_topics("a"), **{"/a/disparity": DisparityImage, "/tf": TFMessage}))
         cls.diagnostics = chain.Diagnostics()
         chain.wait_for_robots(["a"])
 
@@ -133,7 +137,7 @@ class Faults(unittest.TestCase):
         # What odometry of the play before had left in tf ended with it.
         after = self.diagnostics.count("/a/mapper", "dropped"), self.diagnostics.count("/a/mapper", "processed")
         self.assertGreater(after[0], before[0] + 20)
-        self.assertLess(after[1], before[1] + 5)
+        self.assertLess(after[1], before[1] + LATE_SCANS)
         causes = [key for key in self.diagnostics.of("/a/mapper") if key.startswith("dropped: ")]
         self.assertTrue(any("a/odom -> a/base_link" in cause for cause in causes), causes)
 
@@ -141,7 +145,7 @@ class Faults(unittest.TestCase):
         before = self.diagnostics.count("/a/mapper", "processed")
         dropped = self.diagnostics.count("/a/mapper", "dropped")
         self.play_changed(nan_odometry)
-        self.assertLess(self.diagnostics.count("/a/mapper", "processed"), before + 5)
+        self.assertLess(self.diagnostics.count("/a/mapper", "processed"), before + LATE_SCANS)
         self.assertGreater(self.diagnostics.count("/a/mapper", "dropped"), dropped + 20)
 
     def complaint_about(self, set_fields):
@@ -170,5 +174,4 @@ class Faults(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    import rostest
-    rostest.rosrun("cornerstone", "faults", Faults, sys.argv)
+    chain.run("faults", Faults)

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Two robots in two buildings, played together: both map, and nothing ever joins their maps."""
-import sys
 import unittest
 
 import rospy
@@ -58,5 +57,4 @@ class OtherBuilding(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    import rostest
-    rostest.rosrun("cornerstone", "other_building", OtherBuilding, sys.argv)
+    chain.run("other_building", OtherBuilding)

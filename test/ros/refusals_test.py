@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """A wrong parameter stops the start and is named: exit code 2 of a stand-alone node, a failed load in a manager."""
-import sys
 import unittest
 
 import rospy
@@ -8,69 +7,76 @@ import rospy
 import chain
 from programs import Node, load_parameters, parameters_of
 
-# program, nodelet, config file, a key of it, what makes it complete
-STAGES = (("trinocular_stereo", "TrinocularStereo", "stereo", "queue_size", {}),
-          ("occupancy_mapper", "OccupancyMapper", "mapper", "tf_timeout_s", {}),
-          ("registration", "Registration", "registration", "period_s", {}),
-          ("simulator", "Simulator", "simulator", "rate_factor", {}))
+# program, nodelet, config file, a numeric key of it
+STAGES = (("trinocular_stereo", "TrinocularStereo", "stereo", "queue_size"),
+          ("occupancy_mapper", "OccupancyMapper", "mapper", "tf_timeout_s"),
+          ("registration", "Registration", "registration", "period_s"),
+          ("simulator", "Simulator", "simulator", "rate_factor"))
 
 
 def faults(config, key):
-    """What is wrong, the changes that make it so, and what the message must name."""
+    """Changes that make the parameters wrong, and what the message must name."""
     inner = "cameras" if config == "simulator" else {"stereo": "stereo", "mapper": "scan", "registration": "tracker"}[config]
     members = dict(parameters_of(config)[inner], surplus=1)
-    return (("unknown", {"quue_size": 5}, "quue_size"), ("unknown inside", {inner: members}, "surplus"),
-            ("missing", {key: None}, key), ("mistyped", {key: "many"}, key), ("not finite", {key: float("nan")}, key),
-            ("not a map", {inner: 3}, inner))
+    return (({"quue_size": 5}, "quue_size"), ({inner: members}, "surplus"), ({key: None}, key), ({key: "many"}, key),
+            ({key: float("nan")}, key), ({inner: 3}, inner))
 
 
 class Refusals(unittest.TestCase):
+    maxDiff = None
+
     @classmethod
     def setUpClass(cls):
         rospy.init_node("refusals_test")
         cls.programs = rospy.myargv()[1]
 
-    def refused(self, program, named):
+    def fault_of(self, program, named):
+        """What is wrong with the refusal, in words; None when it is as it should be."""
         node = Node(f"{self.programs}/{program}_node")
-        self.assertEqual(node.wait(20), 2, node.text())
-        self.assertIn(named, node.text())
+        try:
+            code = node.wait(20)
+        except AssertionError as error:
+            return str(error)
+        return None if code == 2 and named in node.text() else f"code {code}, '{named}' expected:\n{node.text()}"
+
+    def assert_all_refused(self, cases):
+        """cases: program, config file or None for no parameters, changes, name that the message must hold."""
+        found = []
+        for program, config, changes, named in cases:
+            if config:
+                load_parameters(config, "/" + program, **changes)
+            elif rospy.has_param("/" + program):
+                rospy.delete_param("/" + program)
+            fault = self.fault_of(program, named)
+            if fault:
+                found.append(f"{program} with {changes}: {fault}")
+        self.assertEqual(found, [])
 
     def test_stand_alone_nodes(self):
-        for program, _, config, key, _ in STAGES:
-            for what, changes, named in faults(config, key):
-                with self.subTest(program=program, fault=what):
-                    load_parameters(config, "/" + program, **changes)
-                    self.refused(program, named)
+        self.assert_all_refused([(program, config, changes, named) for program, _, config, key in STAGES
+                                 for changes, named in faults(config, key)])
 
     def test_no_parameters_at_all(self):
-        for program, *_ in STAGES:
-            with self.subTest(program=program):
-                if rospy.has_param("/" + program):
-                    rospy.delete_param("/" + program)
-                self.refused(program, "no parameters")
+        self.assert_all_refused([(program, None, {}, "no parameters") for program, *_ in STAGES])
 
     def test_values_out_of_range(self):
-        cases = (("trinocular_stereo", "stereo", {"images": "image_color"}, "images"),
-                 ("trinocular_stereo", "stereo", {"queue_size": 0}, "queue_size"),
-                 ("occupancy_mapper", "mapper", {"input": "sonar"}, "input"),
-                 ("occupancy_mapper", "mapper", {"tf_timeout_s": -1.0}, "tf_timeout_s"),
-                 ("registration", "registration", {"robot": ""}, "robot"),
-                 ("registration", "registration", {"period_s": 0.0}, "period_s"),
-                 ("simulator", "simulator", {"world": "/nowhere.yaml"}, "/nowhere.yaml"),
-                 ("simulator", "simulator", {"robots": ["nobody"]}, "nobody"))
-        for program, config, changes, named in cases:
-            with self.subTest(program=program, changes=changes):
-                load_parameters(config, "/" + program, **changes)
-                self.refused(program, named)
+        self.assert_all_refused([
+            ("trinocular_stereo", "stereo", {"images": "image_color"}, "images"),
+            ("trinocular_stereo", "stereo", {"queue_size": 0}, "queue_size"),
+            ("occupancy_mapper", "mapper", {"input": "sonar"}, "input"),
+            ("occupancy_mapper", "mapper", {"tf_timeout_s": -1.0}, "tf_timeout_s"),
+            ("registration", "registration", {"robot": ""}, "robot"),
+            ("registration", "registration", {"period_s": 0.0}, "period_s"),
+            ("simulator", "simulator", {"world": "/nowhere.yaml"}, "/nowhere.yaml"),
+            ("simulator", "simulator", {"robots": ["nobody"]}, "nobody")])
 
     def test_nodelets_in_a_manager(self):
         chain.wait_until(lambda: chain.publishers_of("/rosout") and self.manager_serves(), "the manager", 30)
-        for _, nodelet, config, key, _ in STAGES:
-            with self.subTest(nodelet=nodelet):
-                load_parameters(config, "/loaded", **{key: "many"})
-                loader = Node("/usr/lib/nodelet/nodelet", "load", f"cornerstone/{nodelet}", "manager", "__name:=loaded")
-                self.assertNotEqual(loader.wait(30), 0, loader.text())
-                self.assertIn("Failed to load", loader.text())
+        for _, nodelet, config, key in STAGES:
+            load_parameters(config, "/loaded", **{key: "many"})
+            loader = Node("/usr/lib/nodelet/nodelet", "load", f"cornerstone/{nodelet}", "manager", "__name:=loaded")
+            self.assertNotEqual(loader.wait(30), 0, nodelet + loader.text())
+            self.assertIn("Failed to load", loader.text())
         # The manager has lived through all of them, and nothing half-started stays behind.
         self.assertTrue(self.manager_serves())
         self.assertEqual(chain.publishers_of("/disparity") + chain.publishers_of("/map"), [])
@@ -85,5 +91,4 @@ class Refusals(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    import rostest
-    rostest.rosrun("cornerstone", "refusals", Refusals, sys.argv)
+    chain.run("refusals", Refusals)

@@ -61,12 +61,12 @@ TEST(ShippedParameters, NoFileIsForgotten) {
 }
 
 TEST(ShippedParameters, TheComparisonSeesASmallDifference) {
-  TrinocularStereoParams changed;
-  changed.stereo.largest_cost_ratio *= 1 + 1e-6;
-  const YAML::Node ours = writeParams(TrinocularStereoParams{}), theirs = writeParams(changed);
-  EXPECT_GT(std::abs(ours["stereo"]["largest_cost_ratio"].as<double>() -
-                     theirs["stereo"]["largest_cost_ratio"].as<double>()),
-            toleranceFor("largest_cost_ratio"));
+  OccupancyMapperParams changed;
+  changed.tf_timeout_s *= 1 + 1e-6;
+  const YAML::Node ours = writeParams(OccupancyMapperParams{}), theirs = writeParams(changed);
+  const double difference_s =
+      std::abs(ours["tf_timeout_s"].as<double>() - theirs["tf_timeout_s"].as<double>());
+  EXPECT_GT(difference_s, toleranceFor("tf_timeout_s"));
 }
 
 }  // namespace

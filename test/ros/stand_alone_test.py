@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The stand-alone nodes do what the nodelets do: simulator, stereo, mapper and registration, each a program."""
-import sys
 import unittest
 
 import rospkg
@@ -53,5 +52,4 @@ class StandAlone(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    import rostest
-    rostest.rosrun("cornerstone", "stand_alone", StandAlone, sys.argv)
+    chain.run("stand_alone", StandAlone)

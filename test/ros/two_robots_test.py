@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Both robots play one recorded tour: maps, landmarks, registration and the tf between the maps, against the truth."""
-import sys
 import unittest
 
 import rospy
@@ -158,5 +157,4 @@ class TwoRobots(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    import rostest
-    rostest.rosrun("cornerstone", "two_robots", TwoRobots, sys.argv)
+    chain.run("two_robots", TwoRobots)

@@ -35,12 +35,15 @@ TEST(ShippedWorlds, RobotsStartInFreeSpaceAndApart) {
     for (const ScenarioRobot& robot : world.robots) {
       const Eigen::Vector2d at_m = robot.world_from_start.translation();
       EXPECT_GT(obstacles.distanceTo(at_m), vehicle.radius_m) << robot.name;
-      for (const Solid& solid : solids)
-        if (solid.z_min_m < vehicle.height_m && solid.z_max_m > kFloorUnevenness_m)
+      for (const Solid& solid : solids) {
+        if (solid.z_min_m < vehicle.height_m && solid.z_max_m > kFloorUnevenness_m) {
           EXPECT_FALSE(isInside(solid, at_m)) << robot.name;
-      for (const ScenarioRobot& other : world.robots)
-        if (&other != &robot)
-          EXPECT_GT((other.world_from_start.translation() - at_m).norm(), 2 * vehicle.radius_m) << robot.name;
+        }
+      }
+      for (const ScenarioRobot& other : world.robots) {
+        const double apart_m = (other.world_from_start.translation() - at_m).norm();
+        EXPECT_TRUE(&other == &robot || apart_m > 2 * vehicle.radius_m) << robot.name;
+      }
     }
   }
   EXPECT_GE(worlds, 3);
