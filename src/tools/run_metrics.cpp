@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 #include "cornerstone/base/errors.h"
@@ -90,6 +92,76 @@ void addRegistration(const RunRecording& run, nlohmann::json& result) {
   result["relative_error_deg"] = error->angle_deg;
 }
 
+// The rigid motion of the plane that lays one path on another best; empty for paths without extent.
+std::optional<Pose2> fitPaths(const std::vector<Eigen::Vector2d>& target,
+                              const std::vector<Eigen::Vector2d>& source) {
+  constexpr double kShortest_m = 1;  // root mean square extent; less says too little of the heading
+  const auto meanOf = [](const std::vector<Eigen::Vector2d>& points) {
+    return Eigen::Vector2d(std::accumulate(points.begin(), points.end(), Eigen::Vector2d(0, 0)) /
+                           static_cast<double>(points.size()));
+  };
+  if (target.empty()) return {};
+  const Eigen::Vector2d to_mean = meanOf(target), from_mean = meanOf(source);
+  double dot = 0, cross = 0, extent_m2 = 0;
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    const Eigen::Vector2d to = target[i] - to_mean, from = source[i] - from_mean;
+    dot += from.dot(to);
+    cross += from.x() * to.y() - from.y() * to.x();
+    extent_m2 += to.squaredNorm();
+  }
+  if (std::sqrt(extent_m2 / static_cast<double>(target.size())) < kShortest_m) return {};
+  Pose2 motion{0, 0, std::atan2(cross, dot)};
+  const Eigen::Vector2d shift = to_mean - motion.rotation() * from_mean;
+  motion.x_m = shift.x();
+  motion.y_m = shift.y();
+  return motion;
+}
+
+void addCounts(const RunRecording& run, nlohmann::json& result) {
+  unsigned frames = 0, dropped = 0;
+  for (const auto& [name, robot] : run.robots) {
+    if (robot.truth.empty()) continue;
+    nlohmann::json& entry = result["robots"][name];
+    result["corners"][name] = robot.landmarks.corners.size();
+    for (const auto& [stage, counts] : robot.stages) {
+      entry[stage] = {{"processed", counts.processed}, {"dropped", counts.dropped}};
+      dropped += counts.dropped;
+    }
+    if (const auto mapper = robot.stages.find("mapper"); mapper != robot.stages.end()) {
+      entry["mapping_hz"] =
+          mapper->second.processed / (robot.truth.back().time_s - robot.truth.front().time_s);
+      frames += mapper->second.processed;
+    }
+    if (robot.collisions) entry["collisions"] = *robot.collisions;
+  }
+  result["frames"] = frames;
+  result["dropped"] = dropped;
+}
+
+// Precision and recall of all maps together, and of each robot's; "_from_start": placed by the start pose
+// alone.
+void addMaps(const RunRecording& run, const SightOfSurfaces& truth, nlohmann::json& result) {
+  for (const auto& [placement, ending] :
+       {std::pair(Placement::kTrajectory, ""), std::pair(Placement::kStart, "_from_start")}) {
+    MapAccuracy all;
+    for (const auto& [name, robot] : run.robots) {
+      if (robot.truth.empty() || robot.map.occupied.empty()) continue;
+      const auto world_from_map = worldFromMap(run, name, placement);
+      if (!world_from_map) continue;
+      const MapAccuracy accuracy = mapAccuracy(run, name, *world_from_map, truth);
+      result["robots"][name][std::string("map_precision") + ending] =
+          ratio(accuracy.occupied_true, accuracy.occupied);
+      result["robots"][name][std::string("map_recall") + ending] = ratio(accuracy.seen_mapped, accuracy.seen);
+      all.occupied += accuracy.occupied;
+      all.occupied_true += accuracy.occupied_true;
+      all.seen += accuracy.seen;
+      all.seen_mapped += accuracy.seen_mapped;
+    }
+    result[std::string("map_precision") + ending] = ratio(all.occupied_true, all.occupied);
+    result[std::string("map_recall") + ending] = ratio(all.seen_mapped, all.seen);
+  }
+}
+
 }  // namespace
 
 std::optional<Pose2> truthAt(const RobotRecording& robot, double time_s) {
@@ -105,26 +177,31 @@ std::optional<Pose2> truthAt(const RobotRecording& robot, double time_s) {
                wrapAngle(a.yaw_rad + share * wrapAngle(b.yaw_rad - a.yaw_rad))};
 }
 
-std::optional<Pose2> worldFromMap(const RunRecording& run, const std::string& robot) {
-  const RobotRecording& recording = run.robots.at(robot);
-  for (const StampedPose& stamped : recording.truth)
-    if (const auto map_from_base = transformAt(run, robot + "/map", robot + "/base_link", stamped.time_s))
-      return stamped.pose * map_from_base->inverse();
-  return {};
+std::optional<Pose2> worldFromMap(const RunRecording& run, const std::string& robot, Placement placement) {
+  std::vector<Eigen::Vector2d> in_map, in_world;
+  double next_s = 0;
+  for (const StampedPose& stamped : run.robots.at(robot).truth) {
+    if (stamped.time_s < next_s) continue;
+    const auto map_from_base = transformAt(run, robot + "/map", robot + "/base_link", stamped.time_s);
+    if (!map_from_base) continue;
+    if (placement == Placement::kStart) return stamped.pose * map_from_base->inverse();
+    in_map.push_back(map_from_base->translation());
+    in_world.push_back(stamped.pose.translation());
+    next_s = stamped.time_s + kTruthStep_s;
+  }
+  return fitPaths(in_world, in_map);
 }
 
-MapAccuracy mapAccuracy(const RunRecording& run, const std::string& robot, const TrueSurfaces& surfaces,
-                        const Sight& sight) {
+MapAccuracy mapAccuracy(const RunRecording& run, const std::string& robot, const Pose2& world_from_map,
+                        const SightOfSurfaces& truth) {
   const RobotRecording& recording = run.robots.at(robot);
-  const auto world_from_map = worldFromMap(run, robot);
-  if (!world_from_map) throw InputError(run.path + ": no tf from the map of robot " + robot + " to its base");
-  const auto occupied = occupiedPoints(recording.map, *world_from_map);
-  const auto seen = seenSurface(recording, surfaces, sight);
+  const auto occupied = occupiedPoints(recording.map, world_from_map);
+  const auto seen = seenSurface(recording, truth.surfaces, truth.sight);
   MapAccuracy accuracy;
   accuracy.occupied = occupied.size();
-  accuracy.occupied_true = static_cast<std::size_t>(
-      std::count_if(occupied.begin(), occupied.end(),
-                    [&](const Eigen::Vector2d& point) { return surfaces.distanceTo(point) <= kNear_m; }));
+  accuracy.occupied_true = static_cast<std::size_t>(std::count_if(
+      occupied.begin(), occupied.end(),
+      [&](const Eigen::Vector2d& point) { return truth.surfaces.distanceTo(point) <= kNear_m; }));
   accuracy.seen = seen.size();
   accuracy.seen_mapped = countNear(seen, occupied);
   return accuracy;
@@ -143,43 +220,14 @@ std::optional<RelativePoseError> relativePoseError(const RunRecording& run, cons
 
 nlohmann::json evaluateRun(const RunRecording& run, const Sight& sight) {
   if (run.world_yaml.empty()) throw InputError(run.path + ": no topic /world");
-  const World world = parseWorld(run.world_yaml, run.path + ": /world", ".");
-  const TrueSurfaces surfaces(solidsOf(world));
-  nlohmann::json result, robots;
+  const TrueSurfaces surfaces(solidsOf(parseWorld(run.world_yaml, run.path + ": /world", ".")));
+  nlohmann::json result;
   addRegistration(run, result);
-  MapAccuracy all;
-  unsigned frames = 0, dropped = 0;
-  for (const auto& [name, robot] : run.robots) {
-    if (robot.truth.empty()) continue;
-    nlohmann::json& entry = robots[name];
-    result["corners"][name] = robot.landmarks.corners.size();
-    for (const auto& [stage, counts] : robot.stages) {
-      entry[stage] = {{"processed", counts.processed}, {"dropped", counts.dropped}};
-      dropped += counts.dropped;
-    }
-    if (robot.stages.count("mapper") > 0) {
-      const unsigned mapped = robot.stages.at("mapper").processed;
-      entry["mapping_hz"] = mapped / (robot.truth.back().time_s - robot.truth.front().time_s);
-      frames += mapped;
-    }
-    if (robot.collisions) entry["collisions"] = *robot.collisions;
-    if (robot.map.occupied.empty()) continue;
-    const MapAccuracy accuracy = mapAccuracy(run, name, surfaces, sight);
-    entry["map_precision"] = ratio(accuracy.occupied_true, accuracy.occupied);
-    entry["map_recall"] = ratio(accuracy.seen_mapped, accuracy.seen);
-    all.occupied += accuracy.occupied;
-    all.occupied_true += accuracy.occupied_true;
-    all.seen += accuracy.seen;
-    all.seen_mapped += accuracy.seen_mapped;
-  }
-  result["map_precision"] = ratio(all.occupied_true, all.occupied);
-  result["map_recall"] = ratio(all.seen_mapped, all.seen);
-  result["frames"] = frames;
-  result["dropped"] = dropped;
+  addCounts(run, result);
+  addMaps(run, {surfaces, sight}, result);
   if (!run.real_time_factors.empty())
     result["real_time_factor"] =
         *std::min_element(run.real_time_factors.begin(), run.real_time_factors.end());
-  result["robots"] = robots;
   return result;
 }
 

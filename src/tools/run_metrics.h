@@ -10,6 +10,11 @@
 
 namespace cornerstone {
 
+struct SightOfSurfaces {
+  const TrueSurfaces& surfaces;
+  Sight sight;  // a surface point counts as seen within this, unhidden, from any pose of the true path
+};
+
 struct MapAccuracy {
   std::size_t occupied = 0;       // occupied cells
   std::size_t occupied_true = 0;  // of these, within 0.10 m of a true surface
@@ -17,10 +22,19 @@ struct MapAccuracy {
   std::size_t seen_mapped = 0;    // of these, within 0.10 m of an occupied cell
 };
 
-// The robot's last map against the world. The map's frame is placed where the robot truly stood when its map
-// began: whatever the map drifts from there counts against it.
-MapAccuracy mapAccuracy(const RunRecording& run, const std::string& robot, const TrueSurfaces& surfaces,
-                        const Sight& sight);
+// How a map's frame is placed in the world for its evaluation.
+enum class Placement {
+  kStart,       // where the robot truly stood when its map began: all drift from there counts against the map
+  kTrajectory,  // by the least-squares fit of the robot's path in the map to its true path, as is usual for
+                // the absolute trajectory error: what counts is the map's own shape
+};
+
+// world_from_map; empty when tf never knew the robot's map, or the path is too short (1 m) to be fitted.
+std::optional<Pose2> worldFromMap(const RunRecording& run, const std::string& robot, Placement placement);
+
+// The robot's last map, placed in the world, against the true surfaces.
+MapAccuracy mapAccuracy(const RunRecording& run, const std::string& robot, const Pose2& world_from_map,
+                        const SightOfSurfaces& truth);
 
 struct RelativePoseError {
   double distance_m = 0;
@@ -33,9 +47,6 @@ std::optional<RelativePoseError> relativePoseError(const RunRecording& run, cons
 
 // world_from_base between the recorded poses; empty before the first or after the last.
 std::optional<Pose2> truthAt(const RobotRecording& robot, double time_s);
-
-// world_from_map as mapAccuracy places it; empty when tf never knew the robot's map.
-std::optional<Pose2> worldFromMap(const RunRecording& run, const std::string& robot);
 
 // All figures of the run: the JSON that evaluate_run and the demo print.
 nlohmann::json evaluateRun(const RunRecording& run, const Sight& sight);

@@ -139,7 +139,7 @@ cv::Mat3b pictureOfOneFrame(const std::string& bag, const std::string& robot, do
 
 cv::Mat3b pictureOfMapAndTruth(const RunRecording& run, const std::string& robot) {
   const GridMap& map = run.robots.at(robot).map;
-  const auto world_from_map = worldFromMap(run, robot);
+  const auto world_from_map = worldFromMap(run, robot, Placement::kTrajectory);
   if (map.occupied.empty() || run.world_yaml.empty() || !world_from_map) return {};
   Canvas canvas = Canvas::over({{&map, *world_from_map}});
   drawMap(canvas, map, *world_from_map);
