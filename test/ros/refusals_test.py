@@ -2,11 +2,13 @@
 """A wrong parameter stops the start and is named: exit code 2 of a stand-alone node, a failed load in a manager."""
 import unittest
 
+import rospkg
 import rospy
 
 import chain
 from programs import Node, load_parameters, parameters_of
 
+OFFICE = rospkg.RosPack().get_path("cornerstone") + "/worlds/office.yaml"
 # program, nodelet, config file, a numeric key of it
 STAGES = (("trinocular_stereo", "TrinocularStereo", "stereo", "queue_size"),
           ("occupancy_mapper", "OccupancyMapper", "mapper", "tf_timeout_s"),
@@ -68,7 +70,7 @@ class Refusals(unittest.TestCase):
             ("registration", "registration", {"robot": ""}, "robot"),
             ("registration", "registration", {"period_s": 0.0}, "period_s"),
             ("simulator", "simulator", {"world": "/nowhere.yaml"}, "/nowhere.yaml"),
-            ("simulator", "simulator", {"robots": ["nobody"]}, "nobody")])
+            ("simulator", "simulator", {"robots": ["nobody"], "world": OFFICE}, "nobody")])
 
     def test_nodelets_in_a_manager(self):
         chain.wait_until(lambda: chain.publishers_of("/rosout") and self.manager_serves(), "the manager", 30)
