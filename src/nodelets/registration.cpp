@@ -2,6 +2,7 @@
 // robots; gives landmarks, landmark_markers, registration, match_markers, merged_map and, while registered,
 // the tf between the maps.
 #include <tf2_ros/transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include <optional>
@@ -76,6 +77,7 @@ class RegistrationNodelet : public nodelet::Nodelet {
     // The other robots stand beside this one's namespace: /b follows /a/map_tiles.
     const std::string beside = ros::names::parentNamespace(node.getNamespace());
     follow(reference_, ros::names::append(beside, params_.reference_robot + "/map_tiles"));
+    listener_.emplace(tf_buffer_, node);
     broadcaster_.emplace();
     tf_timer_ =
         node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { broadcast(); });
@@ -107,15 +109,28 @@ class RegistrationNodelet : public nodelet::Nodelet {
   }
 
   void registerOnce() {
-    std::optional<Pose2> prior;
+    RegistrationHints hints;
     if (tracker_->state() == RegistrationState::kRegistered)
-      prior = tracker_->estimate()->reference_from_current;
-    refusal_.clear();
-    auto answer = registerMaps(reference_.view(), own_.view(), prior, params_.registration, &refusal_);
+      hints.prior = tracker_->estimate()->reference_from_current;
+    hints.focus_in_current_m = whereTheRobotIs();
+    auto [answer, refusal] = registerMaps(reference_.view(), own_.view(), hints, params_.registration);
+    refusal_ = refusal;
     // Where the known frame no longer holds, the maps may say where the truth lies: that is a contradiction.
-    if (!answer && prior) answer = registerMaps(reference_.view(), own_.view(), {}, params_.registration);
+    if (!answer && hints.prior) {
+      hints.prior.reset();
+      answer = registerMaps(reference_.view(), own_.view(), hints, params_.registration).registration;
+    }
     if (answer) keepMatches(*answer);
-    tracker_->update(answer, knownCentre(own_.map), ros::Time::now().toSec());
+    // Answers are compared, and followed, where the frame must be right.
+    tracker_->update(answer, hints.focus_in_current_m.value_or(knownCentre(own_.map)),
+                     ros::Time::now().toSec());
+  }
+
+  // In its own map; empty while tf does not say.
+  std::optional<Eigen::Vector2d> whereTheRobotIs() const {
+    const auto map_from_base = lookUp(tf_buffer_, params_.frames.map, params_.frames.base, ros::Time(0));
+    if (!map_from_base) return std::nullopt;
+    return Eigen::Vector2d(map_from_base->translation().head<2>());
   }
 
   void publishLandmarks() {
@@ -187,6 +202,8 @@ class RegistrationNodelet : public nodelet::Nodelet {
   ros::Publisher registration_publisher_;
   ros::Publisher matches_publisher_;
   ros::Publisher merged_publisher_;
+  tf2_ros::Buffer tf_buffer_;
+  std::optional<tf2_ros::TransformListener> listener_;
   std::optional<tf2_ros::TransformBroadcaster> broadcaster_;
   ros::Timer attempt_timer_;
   ros::Timer tf_timer_;

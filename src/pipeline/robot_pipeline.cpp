@@ -1,5 +1,7 @@
 #include "cornerstone/pipeline/robot_pipeline.h"
 
+#include <utility>
+
 namespace cornerstone {
 
 void describe(ParamVisitor& visitor, PipelineParams& params) {
@@ -22,8 +24,10 @@ std::optional<Registration> registerRobots(const RobotPipeline& reference, const
                                            const RegistrationParams& params, std::string* refusal) {
   const GridMap reference_map = reference.map(), current_map = current.map();
   const Landmarks reference_landmarks = reference.landmarks(), current_landmarks = current.landmarks();
-  return registerMaps({reference_map, reference_landmarks}, {current_map, current_landmarks}, {}, params,
-                      refusal);
+  RegistrationOutcome outcome =
+      registerMaps({reference_map, reference_landmarks}, {current_map, current_landmarks}, {}, params);
+  if (refusal != nullptr) *refusal = outcome.refusal;
+  return std::move(outcome.registration);
 }
 
 }  // namespace cornerstone

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace cornerstone {
 namespace {
@@ -52,7 +54,14 @@ std::optional<std::string> reasonToRefuse(const PoseEvidence& evidence, const Re
   if (evidence.clear_rival > params.max_clear_rival) return "a different pose is free of contradictions, too";
   if (evidence.spread < params.min_spread) return "the walls leave one direction open";
   if (probabilityRight(evidence) >= params.min_probability) return std::nullopt;
-  return evidence.second_best > 0.8 ? "another pose fits nearly as well" : "the maps contradict each other";
+  std::ostringstream reason;
+  reason << std::fixed << std::setprecision(1)
+         << (evidence.second_best > 0.8 ? "another pose fits nearly as well"
+                                        : "the maps contradict each other")
+         << " (" << evidence.agreeing_m << " m of wall agree, " << evidence.contradicting_m
+         << " m contradict, the second best pose has " << std::setprecision(2) << evidence.second_best
+         << " of the value)";
+  return reason.str();
 }
 
 }  // namespace cornerstone

@@ -18,28 +18,63 @@ using Adapter = ceres::TinySolverCostFunctionAdapter<Eigen::Dynamic, 3>;
 constexpr std::size_t kMinPartners = 10;
 constexpr double kTile_m = 3;  // about a wall
 
-// Partners of one map's edges in the other; `forward`: the edges are the current map's.
-void addPairs(const EdgeIndex& from, const EdgeIndex& to, const Pose2& to_from_from, double reach_m,
-              bool forward, std::size_t max_edges, const Eigen::Vector2d& pivot_m,
-              std::vector<LinePair>& pairs) {
-  const Eigen::Matrix2d turn = to_from_from.rotation();
-  const std::size_t step = (from.edges().size() + max_edges - 1) / max_edges;
-  for (std::size_t i = 0; i < from.edges().size(); i += step) {
-    const EdgePoint& edge = from.edges()[i];
-    const Eigen::Vector2d normal = turn * edge.normal;
-    const int partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
-    if (partner < 0) continue;
-    const EdgePoint& other = to.edges()[static_cast<std::size_t>(partner)];
-    const Eigen::Vector2d mean = (normal + other.normal).normalized();
-    if (forward)
-      pairs.push_back({edge.position_m - pivot_m, other.position_m, mean, 1});
-    else
-      pairs.push_back({other.position_m - pivot_m, edge.position_m, turn.transpose() * mean, 1});
-  }
-}
+// Factor of the residuals around a point.
+struct Focus {
+  std::optional<Eigen::Vector2d> at_m;  // relative to the pivot
+  double radius_m;
 
-// Cauchy weights for the scatter that the pairs show.
-double weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x) {
+  double factorAt(const Eigen::Vector2d& current_m) const {
+    if (!at_m) return 1;
+    return std::exp(-(current_m - *at_m).squaredNorm() /
+                    (4 * radius_m * radius_m));  // its square is Gaussian
+  }
+};
+
+struct Pairing {
+  const EdgeIndex& reference;
+  const EdgeIndex& current;
+  Eigen::Vector2d pivot_m;
+  std::size_t max_edges;
+
+  // Every edge of each map with the nearest one of the other under a pose.
+  std::vector<LinePair> under(const Pose2& reference_from_current, double reach_m) const {
+    std::vector<LinePair> pairs;
+    const Eigen::Matrix2d turn = reference_from_current.rotation();
+    forEachPartner({current, reference, reference_from_current}, reach_m,
+                   [&](const EdgePoint& here, const EdgePoint& there, const Eigen::Vector2d& normal) {
+                     pairs.push_back({here.position_m - pivot_m, there.position_m, normal, 1});
+                   });
+    forEachPartner({reference, current, reference_from_current.inverse()}, reach_m,
+                   [&](const EdgePoint& there, const EdgePoint& here, const Eigen::Vector2d& normal) {
+                     pairs.push_back({here.position_m - pivot_m, there.position_m, turn * normal, 1});
+                   });
+    return pairs;
+  }
+
+ private:
+  struct Way {
+    const EdgeIndex& from;
+    const EdgeIndex& to;
+    Pose2 to_from_from;
+  };
+  template <typename Use>  // of an edge, its partner, and the normal of their line in the partner's map
+  void forEachPartner(const Way& way, double reach_m, const Use& use) const {
+    const auto& [from, to, to_from_from] = way;
+    const Eigen::Matrix2d turn = to_from_from.rotation();
+    const std::size_t step = (from.edges().size() + max_edges - 1) / max_edges;
+    for (std::size_t i = 0; i < from.edges().size(); i += step) {
+      const EdgePoint& edge = from.edges()[i];
+      const Eigen::Vector2d normal = turn * edge.normal;
+      const int partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
+      if (partner < 0) continue;
+      const EdgePoint& other = to.edges()[static_cast<std::size_t>(partner)];
+      use(edge, other, (normal + other.normal).normalized());
+    }
+  }
+};
+
+// Cauchy weights for the scatter that the pairs show, and more near the focus.
+void weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Focus& focus) {
   std::vector<double> residuals(pairs.size());
   for (LinePair& pair : pairs) pair.weight = 1;
   const double* block = x.data();
@@ -50,8 +85,8 @@ double weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x) {
   const double scale =
       std::max(1.4826 * sizes[sizes.size() / 2], 1e-3);  // of a normal distribution with this median
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    pairs[i].weight = 1 / std::sqrt(1 + residuals[i] * residuals[i] / (scale * scale));
-  return scale;
+    pairs[i].weight =
+        focus.factorAt(pairs[i].current_m) / std::sqrt(1 + residuals[i] * residuals[i] / (scale * scale));
 }
 
 Pose2 poseAt(const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m) {
@@ -117,6 +152,9 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
   Eigen::Vector2d pivot_m(0, 0);
   for (const EdgePoint& edge : current.edges())
     pivot_m += edge.position_m / static_cast<double>(current.edges().size());
+  Focus focus{std::nullopt, options.focus_radius_m};
+  if (options.focus_in_current_m) focus.at_m = *options.focus_in_current_m - pivot_m;
+  const Pairing pairing{reference, current, pivot_m, options.max_edges};
   const Eigen::Vector2d start = guess * pivot_m;
   Eigen::Vector3d x(start.x(), start.y(), guess.yaw_rad);
   std::vector<LinePair> pairs;
@@ -124,12 +162,9 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
     const double share = options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 1;
     const double reach_m =
         options.first_reach_m * std::pow(options.last_reach_m / options.first_reach_m, share);
-    const Pose2 pose = poseAt(x, pivot_m);
-    pairs.clear();
-    addPairs(current, reference, pose, reach_m, true, options.max_edges, pivot_m, pairs);
-    addPairs(reference, current, pose.inverse(), reach_m, false, options.max_edges, pivot_m, pairs);
+    pairs = pairing.under(poseAt(x, pivot_m), reach_m);
     if (pairs.size() < kMinPartners) return std::nullopt;
-    weigh(pairs, x);
+    weigh(pairs, x, focus);
     const LineCost cost(pairs);
     const Adapter adapter(cost);
     ceres::TinySolver<Adapter> solver;

@@ -105,32 +105,49 @@ std::vector<PoseScore> scoreAndSort(const MapEvidence& there, const MapEvidence&
   return scores;
 }
 
+// On all edges first: that judges the answer. Around the focus then, where enough is seen there.
+std::optional<RefinedPose> refine(const MapView& reference, const MapView& current, const Pose2& guess,
+                                  const RefinementOptions& options, double min_spread) {
+  const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m);
+  const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m);
+  RefinementOptions everywhere = options;
+  everywhere.focus_in_current_m.reset();
+  const auto whole = refineOnEdges(reference_index, current_index, guess, everywhere);
+  if (!whole || !options.focus_in_current_m) return whole;
+  auto local = refineOnEdges(reference_index, current_index, whole->reference_from_current, options);
+  if (!local || local->spread < min_spread ||
+      areDifferent(local->reference_from_current, whole->reference_from_current, *options.focus_in_current_m,
+                   options.first_reach_m, kMergeAngle_rad))
+    return whole;
+  local->spread = whole->spread;
+  return local;
+}
+
 }  // namespace
 
-std::optional<Registration> registerMaps(const MapView& reference, const MapView& current,
-                                         const std::optional<Pose2>& prior, const RegistrationParams& params,
-                                         std::string* refusal) {
-  const auto refuse = [refusal](const std::string& why) -> std::optional<Registration> {
-    if (refusal != nullptr) *refusal = why;
-    return std::nullopt;
-  };
-  if (reference.landmarks.edges.empty()) return refuse("the reference map has no edges");
-  if (current.landmarks.edges.empty()) return refuse("the current map has no edges");
+RegistrationOutcome registerMaps(const MapView& reference, const MapView& current,
+                                 const RegistrationHints& hints, const RegistrationParams& params) {
+  if (reference.landmarks.edges.empty()) return {{}, "the reference map has no edges"};
+  if (current.landmarks.edges.empty()) return {{}, "the current map has no edges"};
   const MapEvidence there = evidenceOf(reference, params), here = evidenceOf(current, params);
-  const std::vector<Pose2> proposals =
-      prior ? proposeAround(*prior, reference, current, params) : propose(reference, current, there, here);
+  const std::vector<Pose2> proposals = hints.prior ? proposeAround(*hints.prior, reference, current, params)
+                                                   : propose(reference, current, there, here);
   std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
-  if (prior) keepNear(best, *prior, params);
+  if (hints.prior) keepNear(best, *hints.prior, params);
   const std::vector<PoseScore> scores = scoreAndSort(there, here, best);
-  if (best.empty() || best.front().value <= 0) return refuse("no pose agrees with both maps");
-  const Hypothesis& winner = best.front();
+  if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
 
-  const EdgeIndex reference_index(reference.landmarks.edges, params.refine_reach_m);
-  const EdgeIndex current_index(current.landmarks.edges, params.refine_reach_m);
   RefinementOptions options;
   options.first_reach_m = params.refine_reach_m;
-  const auto refined = refineOnEdges(reference_index, current_index, winner.reference_from_current, options);
-  if (!refined) return refuse("too few edges agree");
+  options.focus_in_current_m = hints.focus_in_current_m;
+  options.focus_radius_m = params.focus_radius_m;
+  const auto refined =
+      refine(reference, current, best.front().reference_from_current, options, params.min_spread);
+  if (!refined) return {{}, "too few edges agree"};
+  PoseEvidence evidence = weighScores(scores, params.fine_cell_m);
+  evidence.spread = refined->spread;
+  evidence.with_prior = hints.prior.has_value();
+  if (const auto reason = reasonToRefuse(evidence, params)) return {{}, *reason};
 
   Registration registration;
   registration.reference_from_current = refined->reference_from_current;
@@ -139,15 +156,10 @@ std::optional<Registration> registerMaps(const MapView& reference, const MapView
                                      refined->reference_from_current, kMatched);
   registration.rms_m = refined->rms_m;
   registration.overlap = overlapOf(there.coarse, here.coarse, refined->reference_from_current);
-  PoseEvidence evidence = weighScores(scores, params.fine_cell_m);
-  evidence.spread = refined->spread;
-  evidence.with_prior = prior.has_value();
   registration.agreement = scores.front().agreement();
   registration.second_best = evidence.second_best;
   registration.probability = probabilityRight(evidence);
-  const auto reason = reasonToRefuse(evidence, params);
-  if (reason) return refuse(*reason);
-  return registration;
+  return {registration, ""};
 }
 
 void describe(ParamVisitor& visitor, RegistrationParams& params) {
@@ -162,6 +174,7 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("different_m", params.different_m);
   visitor.degrees("different_deg", params.different_rad);
   visitor.field("refine_reach_m", params.refine_reach_m);
+  visitor.field("focus_radius_m", params.focus_radius_m);
   visitor.field("max_clear_rival", params.max_clear_rival);
   visitor.field("min_agreeing_m", params.min_agreeing_m);
   visitor.field("min_agreeing_with_prior_m", params.min_agreeing_with_prior_m);

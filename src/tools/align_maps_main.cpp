@@ -17,6 +17,12 @@ std::optional<Pose2> priorOf(const Arguments& arguments) {
   return Pose2{numbers[0], numbers[1], wrapAngle(numbers[2] * M_PI / 180)};
 }
 
+std::optional<Eigen::Vector2d> focusOf(const Arguments& arguments) {
+  if (!arguments.has("focus")) return std::nullopt;
+  const std::vector<double> numbers = numbersOf(arguments.text("focus"), 2, "--focus X,Y");
+  return Eigen::Vector2d(numbers[0], numbers[1]);
+}
+
 void addAnswer(const Registration& answer, nlohmann::json& result) {
   nlohmann::json covariance = nlohmann::json::array();
   for (int i = 0; i < 9; ++i) covariance.push_back(answer.covariance(i / 3, i % 3));
@@ -33,18 +39,17 @@ void addAnswer(const Registration& answer, nlohmann::json& result) {
 }
 
 Outcome align(int argc, const char* const* argv) {
-  const Arguments arguments(argc, argv,
-                            "align_maps REF.yaml CUR.yaml [--prior X,Y,YAW_DEG] [--overlay OUT.png]", 2,
-                            {"prior", "overlay"});
-  const std::optional<Pose2> prior = priorOf(arguments);
+  const Arguments arguments(
+      argc, argv, "align_maps REF.yaml CUR.yaml [--prior X,Y,YAW_DEG] [--focus X,Y] [--overlay OUT.png]", 2,
+      {"prior", "focus", "overlay"});
+  const RegistrationHints hints{priorOf(arguments), focusOf(arguments)};
   const GridMap reference = loadMap(arguments.positional(0)), current = loadMap(arguments.positional(1));
   Stopwatch watch;
   const Landmarks reference_landmarks = detectLandmarks(reference, {}),
                   current_landmarks = detectLandmarks(current, {});
   const double detect_ms = watch.lap_ms();
-  std::string refusal;
-  const auto answer =
-      registerMaps({reference, reference_landmarks}, {current, current_landmarks}, prior, {}, &refusal);
+  const auto [answer, refusal] =
+      registerMaps({reference, reference_landmarks}, {current, current_landmarks}, hints, {});
   const double register_ms = watch.lap_ms();
 
   nlohmann::json result{
@@ -57,8 +62,9 @@ Outcome align(int argc, const char* const* argv) {
   if (arguments.has("overlay")) {
     const Overlay overlay{reference, reference_landmarks, current, current_landmarks,
                           answer ? answer->matches : std::vector<std::pair<int, int>>{}};
-    writePicture(pictureOfOverlay(overlay, answer ? answer->reference_from_current : prior.value_or(Pose2{})),
-                 arguments.text("overlay"));
+    writePicture(
+        pictureOfOverlay(overlay, answer ? answer->reference_from_current : hints.prior.value_or(Pose2{})),
+        arguments.text("overlay"));
   }
   return {answer ? kExitDone : kExitNoAnswer, result};
 }

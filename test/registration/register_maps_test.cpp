@@ -11,16 +11,12 @@
 namespace cornerstone {
 namespace {
 
-struct Answer {
-  std::optional<Registration> registration;
-  std::string refusal;
-};
+using Answer = RegistrationOutcome;
 
 Answer align(const GridMap& reference, const GridMap& current,
              const std::optional<Pose2>& prior = std::nullopt) {
   const Landmarks there = detectLandmarks(reference, {}), here = detectLandmarks(current, {});
-  Answer answer;
-  answer.registration = registerMaps({reference, there}, {current, here}, prior, {}, &answer.refusal);
+  Answer answer = registerMaps({reference, there}, {current, here}, {prior, {}}, {});
   EXPECT_EQ(answer.registration.has_value(), answer.refusal.empty());
   return answer;
 }

@@ -21,12 +21,14 @@ struct PairingLimits {
 };
 
 // Pairs of equal kind that are each other's nearest under a pose.
-CornerPairs pairNearest(const std::vector<CornerLandmark>& reference, const std::vector<CornerLandmark>& current,
-                        const Pose2& pose, const PairingLimits& limits);
+CornerPairs pairNearest(const std::vector<CornerLandmark>& reference,
+                        const std::vector<CornerLandmark>& current, const Pose2& pose,
+                        const PairingLimits& limits);
 
 // The pose that brings the pairs' apexes together, each pair weighted by its covariances (paper,
 // section 4.2). No answer for fewer than two pairs: one apex leaves the yaw open.
-std::optional<Pose2> solvePairs(const std::vector<CornerLandmark>& reference, const std::vector<CornerLandmark>& current,
-                                const CornerPairs& pairs, const Pose2& guess);
+std::optional<Pose2> solvePairs(const std::vector<CornerLandmark>& reference,
+                                const std::vector<CornerLandmark>& current, const CornerPairs& pairs,
+                                const Pose2& guess);
 
 }  // namespace cornerstone

@@ -11,10 +11,12 @@
 namespace cornerstone {
 
 struct RefinementOptions {
-  double first_reach_m = 0.3;    // search radius at the start
-  double last_reach_m = 0.1;     // and at the end
-  int rounds = 5;                // of choosing partners
-  std::size_t max_edges = 2000;  // of each map, evenly chosen: millimetres need no more
+  double first_reach_m = 0.3;                         // search radius at the start
+  double last_reach_m = 0.1;                          // and at the end
+  int rounds = 5;                                     // of choosing partners
+  std::size_t max_edges = 2000;                       // of each map, evenly chosen: millimetres need no more
+  std::optional<Eigen::Vector2d> focus_in_current_m;  // edges near it weigh most, as a Gaussian; empty: alike
+  double focus_radius_m = 4;                          // its standard deviation
 };
 
 struct RefinedPose {

@@ -25,7 +25,8 @@ class DirectionMatch {
 
 // reference_from_current of every pair of corners of equal kind, yaw corrected.
 std::vector<Pose2> proposeFromCorners(const std::vector<CornerLandmark>& reference,
-                                      const std::vector<CornerLandmark>& current, const DirectionMatch& directions);
+                                      const std::vector<CornerLandmark>& current,
+                                      const DirectionMatch& directions);
 
 // Poses that put the current map's middle within a square and a few degrees of one another become one.
 std::vector<Pose2> mergeProposals(const std::vector<Pose2>& poses, const Eigen::Vector2d& middle_m,

@@ -1,4 +1,4 @@
-// The transform between two robots' maps (paper, section 4, and beyond it), or a refusal.
+// The transform between two robots' maps (paper, section 4, and beyond it), or a refusal. Metres, radians.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,10 +29,20 @@ struct Registration {
   double second_best = 0;  // score of the best different pose over this one's: near 1 is ambiguous
 };
 
-// prior: rough reference_from_current (a shared start, odometry); empty: any pose is possible.
-// Empty result: the evidence does not single out one pose. `refusal`, where given, says why in words.
-std::optional<Registration> registerMaps(const MapView& reference, const MapView& current,
-                                         const std::optional<Pose2>& prior, const RegistrationParams& params,
-                                         std::string* refusal = nullptr);
+// What is known beforehand; empty: any pose is possible, and the whole overlap counts alike.
+struct RegistrationHints {
+  std::optional<Pose2> prior;  // rough reference_from_current: a shared start, odometry
+  // Where in the current map the frame must be right (where the robots are): maps bend, and a pose that is
+  // the mean of a whole building is right nowhere. The evidence for the pose stays that of both whole maps.
+  std::optional<Eigen::Vector2d> focus_in_current_m;
+};
+
+struct RegistrationOutcome {
+  std::optional<Registration> registration;  // empty: the evidence does not single out one pose
+  std::string refusal;                       // why, in words
+};
+
+RegistrationOutcome registerMaps(const MapView& reference, const MapView& current,
+                                 const RegistrationHints& hints, const RegistrationParams& params);
 
 }  // namespace cornerstone

@@ -28,6 +28,8 @@ struct RegistrationParams {
   double different_rad = 10 * M_PI / 180;
   // First search radius of the refinement; it shrinks to the edges' scatter.
   double refine_reach_m = 0.3;
+  // Standard deviation of the weight of the edges around a focus: what a robot sees at once.
+  double focus_radius_m = 4.0;
   // Value of a different pose that next to nothing contradicts over the winner's, above which neither is
   // believed: like offices in a row differ in how much of them the maps share, and in nothing else.
   double max_clear_rival = 0.3;
