@@ -34,6 +34,10 @@ finish() { # the recorder closes its bag when roslaunch ends
 }
 trap finish EXIT
 
+until rosparam get /use_sim_time >/dev/null 2>&1; do # the progress is told in simulated time
+  kill -0 "$launch" 2>/dev/null || { echo "demo: roslaunch has failed; see $out/roslaunch.log" >&2; exit 1; }
+  sleep 0.2
+done
 echo "demo: two robots drive through an office, odometry drifting (seed $seed)"
 scripts/show_progress.py a b --timeout-s 150 || { echo "demo: the run did not end; see $out/roslaunch.log" >&2; exit 1; }
 scripts/rviz_screenshot.sh "$out/rviz.png" || echo "demo: no rviz picture"

@@ -23,6 +23,7 @@ class Progress:
         self.corners = {}
         self.registrations = {}
         self.done = False
+        self.start_s = None
         rospy.Subscriber("/simulation_done", Bool, self.take_done)
         for robot in robots:
             rospy.Subscriber(f"/{robot}/map", OccupancyGrid, self.take_map, robot)
@@ -52,7 +53,9 @@ class Progress:
         self.registrations[robot] = message
 
     def line(self):
-        parts = [f"{rospy.get_time():7.1f} s"]
+        if self.start_s is None and rospy.get_time() > 0:
+            self.start_s = rospy.get_time()
+        parts = [f"{rospy.get_time() - (self.start_s or 0):5.1f} s"]
         for robot, grid in sorted(self.grids.items()):
             area = sum(1 for cell in grid.data if cell >= 0) * grid.info.resolution ** 2
             parts.append(f"{robot}: {area:5.1f} m2, {self.corners.get(robot, 0):2d} corners")

@@ -103,6 +103,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
 
   // Remembers each reference image until its set is complete, so that incomplete sets are counted.
   void await(const ImageConstPtr& reference) {
+    if (!any_set_) return;  // at the start the cameras' connections come one by one
     awaited_.push_back(reference->header.stamp);
     if (awaited_.size() > static_cast<std::size_t>(params_.queue_size)) dropAwaited();
   }
@@ -133,6 +134,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   }
 
   void take(const ImageConstPtr& reference, const ImageConstPtr& right, const ImageConstPtr& top) {
+    any_set_ = true;
     while (!awaited_.empty() && awaited_.front() < reference->header.stamp) dropAwaited();
     if (!awaited_.empty() && awaited_.front() == reference->header.stamp) awaited_.pop_front();
     try {
@@ -164,6 +166,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   std::optional<image_transport::ImageTransport> transport_;
   std::array<Camera, 3> cameras_;
   std::optional<TrinocularRig> rig_;
+  bool any_set_ = false;
   std::deque<ros::Time> awaited_;  // stamps of reference images whose set is not complete yet
   std::optional<message_filters::Synchronizer<TwoImages>> two_;
   std::optional<message_filters::Synchronizer<ThreeImages>> three_;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "cornerstone/base/errors.h"
@@ -36,13 +37,17 @@ struct Frame {
 Frame readFrame(const std::string& path, const std::string& robot, double time_s) {
   const rosbag::Bag bag(path);
   const std::vector<std::string> topics{"/" + robot + "/reference/image_rect", "/" + robot + "/disparity"};
-  sensor_msgs::ImageConstPtr image;
+  // Both are recorded in any order: the first stamp that both have counts.
+  std::map<ros::Time, sensor_msgs::ImageConstPtr> images;
+  std::map<ros::Time, stereo_msgs::DisparityImageConstPtr> disparities;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topics))) {
-    if (const auto found = message.instantiate<sensor_msgs::Image>();
-        found && found->header.stamp.toSec() >= time_s && !image)
-      image = found;
-    const auto disparity = message.instantiate<stereo_msgs::DisparityImage>();
-    if (!disparity || !image || disparity->header.stamp != image->header.stamp) continue;
+    if (const auto image = message.instantiate<sensor_msgs::Image>()) images[image->header.stamp] = image;
+    if (const auto found = message.instantiate<stereo_msgs::DisparityImage>())
+      disparities[found->header.stamp] = found;
+  }
+  for (const auto& [stamp, image] : images) {
+    if (stamp.toSec() < time_s || disparities.count(stamp) == 0) continue;
+    const auto& disparity = disparities.at(stamp);
     Frame frame;
     frame.grey = cv_bridge::toCvCopy(image, "mono8")->image;
     sensor_msgs::CameraInfo info;  // the simulated rig's principal point is the middle of the image
