@@ -16,6 +16,7 @@ BeamEvidence::BeamEvidence(const Beam& beam, const CellWindow& window, const Occ
   sigma_far_m_ = std::sqrt(std::pow((beam.far_m - beam.range_m) / 2, 2) + cell_variance);
   start_m_ = std::max(0.0, beam.range_m - kReachSigmas * sigma_near_m_);
   end_m_ = std::min(beam.range_m + kReachSigmas * sigma_far_m_, grid.params().max_range_m + step_m_);
+  if (beam.sigma_m > grid.params().max_sigma_m) end_m_ = std::min(end_m_, start_m_);
 }
 
 double BeamEvidence::density(double range_m) const {

@@ -43,6 +43,7 @@ void forEachRowPart(const CellWindow& window, const Part& part) {
 void describe(ParamVisitor& visitor, GridParams& params) {
   visitor.field("resolution_m", params.resolution_m);
   visitor.field("max_range_m", params.max_range_m);
+  visitor.field("max_sigma_m", params.max_sigma_m);
   visitor.field("prior_occupied", params.prior_occupied);
   visitor.field("outlier_ratio", params.outlier_ratio);
   visitor.field("free_step", params.free_step);
@@ -57,6 +58,7 @@ void describe(ParamVisitor& visitor, GridParams& params) {
 OccupancyGrid::OccupancyGrid(const GridParams& params) : params_(params), scale_(0.03) {
   requireWithin(params.resolution_m, 0.02, 0.20, "resolution_m");
   requireWithin(params.max_range_m, 0.5, 100, "max_range_m");
+  requireWithin(params.max_sigma_m, 0.001, 100, "max_sigma_m");
   requireWithin(params.prior_occupied, 0.001, 0.4, "prior_occupied");
   requireWithin(params.outlier_ratio, 0.001, 0.5, "outlier_ratio");
   requireWithin(params.free_step, 0.1, 5, "free_step");

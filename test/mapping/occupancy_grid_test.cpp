@@ -45,8 +45,10 @@ TEST(OccupancyGrid, FreeBeforeOccupiedAtUnseenBehind) {
   EXPECT_EQ(at(grid, 0.1, 1.5), kUnseen);    // outside the view
 }
 
-TEST(OccupancyGrid, OneFarLookMakesNoWallButSpreadsItsEvidence) {
-  OccupancyGrid grid({});
+TEST(OccupancyGrid, OneVagueLookMakesNoWallButSpreadsItsEvidence) {
+  GridParams params;
+  params.max_sigma_m = 0.5;
+  OccupancyGrid grid(params);
   grid.insert(wallAt(4.025, 0.3), {});
   EXPECT_LT(at(grid, 2, 0.02), 0.5F);
   for (const double x : {3.9, 4.02, 4.1}) {
@@ -55,8 +57,19 @@ TEST(OccupancyGrid, OneFarLookMakesNoWallButSpreadsItsEvidence) {
   }
 }
 
-TEST(OccupancyGrid, FarLooksNeitherSmearNorEraseASharpWall) {
+TEST(OccupancyGrid, LooksTooVagueToDrawOnlyClear) {
   OccupancyGrid grid({});
+  // 0.15 m is beyond max_sigma_m; the interval starts 3.5 x 0.15 m before the wall, at 3.5 m.
+  for (int look = 0; look < 10; ++look) grid.insert(wallAt(4.025, 0.15), {});
+  EXPECT_LT(at(grid, 2, 0.02), kFree);
+  EXPECT_LT(at(grid, 3.3, 0.02), kFree);
+  for (const double x : {3.6, 3.9, 4.02, 4.1, 4.4}) EXPECT_EQ(at(grid, x, 0.02), kUnseen) << x;
+}
+
+TEST(OccupancyGrid, FarLooksNeitherSmearNorEraseASharpWall) {
+  GridParams params;
+  params.max_sigma_m = 0.5;
+  OccupancyGrid grid(params);
   for (int look = 0; look < 3; ++look) grid.insert(wallAt(2.025, 0.02), {});
   // From 3 m farther back the wall is at 5 m; half of the looks are 0.25 m off either way.
   for (int look = 0; look < 20; ++look) grid.insert(wallAt(look % 2 ? 4.8 : 5.3, 0.3), {-3, 0, 0});
