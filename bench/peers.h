@@ -1,0 +1,40 @@
+// What users would take instead: OpenCV's matchers, MRPT's own insertion and its grid aligner.
+#pragma once
+
+#include <mrpt/maps/COccupancyGridMap2D.h>
+
+#include <Eigen/Geometry>
+#include <opencv2/calib3d.hpp>
+#include <optional>
+
+#include "cornerstone/mapping/grid_map.h"
+#include "cornerstone/scan/column_scan.h"
+#include "cornerstone/stereo/trinocular_rig.h"
+
+namespace cornerstone::bench {
+
+// Block 9, texture 10, uniqueness 10, left-right check 1 px, speckles of 100 px within 16 / 16 px dropped.
+cv::Ptr<cv::StereoMatcher> makeStereoBM(int max_disparity_px);
+// Block 5, P1 8 x 25, P2 32 x 25, left-right check 1 px, uniqueness 10, speckles of 100 px within 2 px
+// dropped.
+cv::Ptr<cv::StereoMatcher> makeStereoSGBM(int max_disparity_px);
+// In px, 0: no answer. Both images are padded at the left by the largest disparity (edge pixels repeated),
+// which saves the left columns that these matchers leave out.
+cv::Mat1f matchOpenCV(cv::StereoMatcher& matcher, const cv::Mat1b& reference, const cv::Mat1b& right);
+
+struct CameraView {
+  TrinocularRig rig;
+  Eigen::Isometry3d base_from_camera;
+};
+// The nearest pixel of every column whose height lies within the band, as ranges in even steps of bearing;
+// inserted at the pose.
+void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, const Pose2& map_from_base,
+                         mrpt::maps::COccupancyGridMap2D& map);
+
+GridMap fromMrpt(const mrpt::maps::COccupancyGridMap2D& map);
+mrpt::maps::COccupancyGridMap2D toMrpt(const GridMap& map);
+
+// CGridMapAligner with its default options and a prior that says nothing; empty: no mode left.
+std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current);
+
+}  // namespace cornerstone::bench

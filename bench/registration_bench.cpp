@@ -1,0 +1,145 @@
+// The pose of one map in another: cornerstone, corner detection included, beside MRPT's aligner.
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "bench.h"
+#include "cornerstone/scan/column_scan.h"
+#include "peers.h"
+#include "tour.h"
+
+namespace cornerstone::bench {
+namespace {
+
+constexpr int kRepeats = 7;
+constexpr double kRight_m = 0.5, kRight_rad = 5 * M_PI / 180;
+
+struct PlacedMap {
+  GridMap map;
+  Pose2 world_from_map;
+};
+
+// The map of every robot of a world in the frame of its start: at true poses or with its own odometry.
+std::map<std::string, PlacedMap> mapsOf(const std::string& world, bool true_poses) {
+  SimulationParams params;
+  params.steps_per_frame = params.steps_per_second / 5;
+  PipelineParams pipeline_params;
+  pipeline_params.mapper.fit_scans = !true_poses;
+  std::map<std::string, RobotPipeline> robots;
+  std::map<std::string, PlacedMap> maps;
+  drive(shippedWorld(world), params, [&](const RobotFrame& frame) {
+    RobotPipeline& robot =
+        robots.try_emplace(frame.robot, mountingOf(params.rig), pipeline_params).first->second;
+    PlacedMap& placed =
+        maps.try_emplace(frame.robot, PlacedMap{{}, frame.world_from_base * frame.odom_from_base.inverse()})
+            .first->second;
+    robot.update({frame.images[0], frame.images[1], frame.images[2]},
+                 true_poses ? placed.world_from_map.inverse() * frame.world_from_base : frame.odom_from_base);
+  });
+  for (auto& [name, placed] : maps) placed.map = robots.at(name).map();
+  return maps;
+}
+
+// Every other scan of a laser log with its poses, in a frame of its own, by MRPT's insertion.
+PlacedMap laserMap(const mrpt::maps::CSimpleMap& log, std::size_t first, const Pose2& map_from_world) {
+  mrpt::maps::COccupancyGridMap2D grid(0, 1, 0, 1, 0.05F);
+  for (std::size_t i = first; i < log.size(); i += 2) {
+    const auto [pose, frame] = log.get(i);
+    const mrpt::poses::CPose3D at =
+        mrpt::poses::CPose3D(map_from_world.x_m, map_from_world.y_m, 0, map_from_world.yaw_rad, 0, 0) +
+        pose->getMeanVal();
+    for (const auto& observation : *frame) grid.insertObservation(*observation, at);
+  }
+  return {fromMrpt(grid), map_from_world.inverse()};
+}
+
+struct Answers {
+  std::vector<double> times_ms, errors_m, errors_rad;
+  int accepted = 0, right = 0;
+};
+
+void note(const std::optional<Pose2>& answer, const Pose2& truth, Answers& answers) {
+  if (!answer) return;
+  ++answers.accepted;
+  const Pose2 error = truth.inverse() * *answer;
+  answers.errors_m.push_back(error.translation().norm());
+  answers.errors_rad.push_back(std::abs(error.yaw_rad));
+  if (answers.errors_m.back() < kRight_m && answers.errors_rad.back() < kRight_rad) ++answers.right;
+}
+
+// `solvable`: false for maps of different buildings, which have no true pose.
+void compare(const std::string& pair, const PlacedMap& reference, const PlacedMap& current, bool solvable) {
+  const Pose2 truth = reference.world_from_map.inverse() * current.world_from_map;
+  Answers ours, mrpt;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    std::optional<Pose2> answer;
+    ours.times_ms.push_back(elapsed_ms([&] {
+      answer.reset();
+      const Landmarks a = detectLandmarks(reference.map, {}), b = detectLandmarks(current.map, {});
+      const auto found = registerMaps({reference.map, a}, {current.map, b}, {}, {});
+      if (found) answer = found->reference_from_current;
+    }));
+    note(answer, truth, ours);
+    mrpt.times_ms.push_back(elapsed_ms([&] { answer = alignMrpt(reference.map, current.map); }));
+    note(answer, truth, mrpt);
+  }
+  const double mrpt_ms = median(mrpt.times_ms);
+  const auto row = [&](const std::string& name, const Answers& answers) {
+    const bool any = answers.accepted > 0 && solvable;
+    const double ms = median(answers.times_ms);
+    printRow({pair, name, solvable ? std::to_string(answers.right) : "-",
+              std::to_string(solvable ? answers.accepted - answers.right : answers.accepted),
+              std::to_string(kRepeats - answers.accepted), any ? text(median(answers.errors_m), 3) : "",
+              any ? text(median(answers.errors_rad) * 180 / M_PI, 2) : "", text(ms, 1), text(ms / mrpt_ms)});
+  };
+  row("cornerstone", ours);
+  row("CGridMapAligner", mrpt);
+}
+
+void compareLasers() {
+  const std::filesystem::path folder("/usr/share/mrpt/datasets");
+  for (const char* name : {"localization_demo.simplemap.gz", "malaga-cs-fac-building.simplemap.gz"}) {
+    mrpt::maps::CSimpleMap log;
+    if (!std::filesystem::exists(folder / name) || !log.loadFromFile((folder / name).string())) {
+      std::fprintf(stderr, "bench: %s is missing (Debian package mrpt-common): left out\n", name);
+      continue;
+    }
+    compare(std::string("`") + name + "`, even and odd scans", laserMap(log, 0, {}),
+            laserMap(log, 1, {-4.3, 2.9, 1.9}), true);
+  }
+}
+
+}  // namespace
+
+void registrationPart() {
+  std::puts(
+      "\n## Registration of two maps\n\nNo prior, every pose possible; 7 repeats in turns (MRPT's aligner is "
+      "random). "
+      "Right: within 0.5 m and 5 degrees of the truth; error and time are medians over the accepted answers "
+      "and over "
+      "all repeats. Stereo maps: 160x120, 5 Hz, each robot's map in the frame of its start; with odometry "
+      "the truth "
+      "is where the robots truly started, and the maps' own drift counts against the answer. Laser maps: "
+      "`/usr/share/mrpt/datasets`, MRPT's insertion at the log's poses, the second map in a frame turned by "
+      "109 "
+      "degrees. cornerstone's time contains the detection of corners in both maps. CGridMapAligner: default "
+      "options, "
+      "the likeliest mode of its answer; its time contains the copy into MRPT's grids. Different buildings: "
+      "every "
+      "answer is wrong.");
+  printHead({"pair", "method", "right", "wrong", "refused", "error m", "error deg", "ms",
+             "time / CGridMapAligner"});
+  const auto office = mapsOf("office.yaml", true), driven = mapsOf("office.yaml", false);
+  const auto elsewhere = mapsOf("other_building.yaml", true);
+  compare("office a, b: true poses", office.at("a"), office.at("b"), true);
+  compare("office a, b: odometry, scans fitted", driven.at("a"), driven.at("b"), true);
+  compareLasers();
+  for (const auto& [name, other] : elsewhere)
+    compare("office a, other building " + name, office.at("a"), other, false);
+}
+
+}  // namespace cornerstone::bench
