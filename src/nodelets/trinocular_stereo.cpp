@@ -30,6 +30,8 @@ using ThreeImages = message_filters::sync_policies::ApproximateTime<sensor_msgs:
 
 constexpr std::array<const char*, 3> kCameras{"reference", "right", "top"};
 
+constexpr int kStartImages = 30;  // reference images without a set before one counts as missing: 3 s at 10 Hz
+
 // One camera: its images, the newest calibration and, for raw images, the rectification made from it.
 struct Camera {
   std::string name;
@@ -103,7 +105,8 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
 
   // Remembers each reference image until its set is complete, so that incomplete sets are counted.
   void await(const ImageConstPtr& reference) {
-    if (!any_set_) return;  // at the start the cameras' connections come one by one
+    // At the start the cameras' connections come one by one.
+    if (!any_set_ && ++before_first_set_ < kStartImages) return;
     awaited_.push_back(reference->header.stamp);
     if (awaited_.size() > static_cast<std::size_t>(params_.queue_size)) dropAwaited();
   }
@@ -167,6 +170,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   std::array<Camera, 3> cameras_;
   std::optional<TrinocularRig> rig_;
   bool any_set_ = false;
+  int before_first_set_ = 0;       // reference images
   std::deque<ros::Time> awaited_;  // stamps of reference images whose set is not complete yet
   std::optional<message_filters::Synchronizer<TwoImages>> two_;
   std::optional<message_filters::Synchronizer<ThreeImages>> three_;
