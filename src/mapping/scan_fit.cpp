@@ -19,10 +19,23 @@ struct BeamEnd {
   double sigma_m = 0;
 };
 
-std::vector<BeamEnd> endsOf(const RangeScan& scan, double max_range_m) {
+// The inverse range of a straight surface runs evenly over the bearing: its second difference vanishes. At
+// depth edges and corners it does not, and there stereo sees another shape from every place.
+bool straightAround(const std::vector<Beam>& beams, std::size_t i, const ScanFitParams& params) {
+  const auto reach = static_cast<std::size_t>(params.straight_beams);
+  if (reach == 0) return true;
+  if (i < reach || i + reach >= beams.size()) return false;
+  const Beam &before = beams[i - reach], &middle = beams[i], &after = beams[i + reach];
+  if (!before.hit || !after.hit) return false;
+  const double bend = 1 / before.range_m + 1 / after.range_m - 2 / middle.range_m;
+  return std::abs(bend) * middle.range_m * middle.range_m < params.straight_sigmas * middle.sigma_m;
+}
+
+std::vector<BeamEnd> endsOf(const RangeScan& scan, const GridParams& grid, const ScanFitParams& params) {
   std::vector<BeamEnd> ends;
-  for (const Beam& beam : scan.beams) {
-    if (!beam.hit || beam.range_m > max_range_m) continue;
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+    const Beam& beam = scan.beams[i];
+    if (!beam.hit || beam.range_m > grid.max_range_m || !straightAround(scan.beams, i, params)) continue;
     const Eigen::Vector2d direction(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad));
     ends.push_back({scan.base_from_sensor * (beam.range_m * direction),
                     scan.base_from_sensor.rotation() * direction, beam.sigma_m});
@@ -136,6 +149,8 @@ void describe(ParamVisitor& visitor, ScanFitParams& params) {
   visitor.field("min_agreeing_share", params.min_agreeing_share);
   visitor.field("min_matches", params.min_matches);
   visitor.field("max_rounds", params.max_rounds);
+  visitor.field("straight_beams", params.straight_beams);
+  visitor.field("straight_sigmas", params.straight_sigmas);
   visitor.field("look_sigma_m", params.look_sigma_m);
   visitor.degrees("look_sigma_deg", params.look_sigma_rad);
 }
@@ -148,6 +163,8 @@ void requireValid(const ScanFitParams& params) {
   requireWithin(params.min_agreeing_share, 0, 1, "min_agreeing_share");
   requireWithin(params.min_matches, 3, 10000, "min_matches");
   requireWithin(params.max_rounds, 1, 100, "max_rounds");
+  requireWithin(params.straight_beams, 0, 100, "straight_beams");
+  requireWithin(params.straight_sigmas, 0.1, 100, "straight_sigmas");
   requireWithin(params.look_sigma_m, 0, 1, "look_sigma_m");
   requireWithin(params.look_sigma_rad, 0, 1, "look_sigma_deg");
 }
@@ -157,7 +174,7 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitS
   ScanFit fit;
   const PoseEstimate& prior = start.prior;
   fit.pose = prior;
-  const std::vector<BeamEnd> ends = endsOf(scan, grid.params().max_range_m);
+  const std::vector<BeamEnd> ends = endsOf(scan, grid.params(), params);
   if (ends.empty() || grid.empty()) return fit;
   const SurfaceLines surfaces = surfacesAround(ends, grid, prior.map_from_base, params);
   const double correlated = std::max(1.0, scan.correlated_beams);

@@ -25,6 +25,8 @@ TEST(Mapper, TakesMostOfTheDriftOutOfATour) {
   params.fit.loss_sigmas = 2;
   params.fit.look_sigma_m = 0.005;
   params.fit.look_sigma_rad = 0.003;
+  params.grid.max_sigma_m = 0.3;
+  params.fit.straight_beams = 0;
   Mapper mapper(params);
   const Pose2 start = steps.front().map_from_base;
   Pose2 error, by_odometry;

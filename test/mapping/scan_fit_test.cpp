@@ -67,6 +67,27 @@ TEST(ScanFit, AlongABareCorridorOdometryDecides) {
   EXPECT_LT(std::sqrt(fit.pose.covariance(1, 1)), 0.03);
 }
 
+TEST(ScanFit, LeavesOutBeamsBesideDepthEdges) {
+  const OccupancyGrid grid = corridorMap(true);
+  const Pose2 pose{0.5, 0, 0};
+  RangeScan scan = corridorScan(pose, true);
+  // A pillar of 11 beams half way to the end wall, which is seen over 44 degrees: the map does not know it.
+  for (std::size_t i = 40; i <= 50; ++i) {
+    for (double* length_m : {&scan.beams[i].range_m, &scan.beams[i].near_m, &scan.beams[i].far_m})
+      *length_m /= 2;
+    scan.beams[i].clear_m = scan.beams[i].near_m;
+  }
+  ScanFitParams all, straight;
+  all.straight_beams = 0;
+  straight.straight_beams = 3;
+  const auto matches = [&](const RangeScan& of, const ScanFitParams& params) {
+    return fitScan(of, grid, {wide(pose), 1}, params).matches;
+  };
+  const RangeScan bare = corridorScan(pose, true);
+  EXPECT_EQ(matches(bare, all) - matches(scan, all), 11);
+  EXPECT_EQ(matches(bare, straight) - matches(scan, straight), 11 + 2 * 3);  // and 3 of the wall to each side
+}
+
 TEST(ScanFit, SaysWhenThereIsNothingToFit) {
   const OccupancyGrid grid = corridorMap(true);
   const ScanFit fit = fitScan(corridorScan({0, 0, 0}, true), grid, {wide({50, 0, 0}), 1}, {});

@@ -19,6 +19,11 @@ struct ScanFitParams {
   double min_agreeing_share = 0.5;  // of the paired ends must lie on their line within 3 sigma
   int min_matches = 12;             // paired ends
   int max_rounds = 5;               // of pairing and solving
+  // Only beams on a straight piece of a surface take part: those so many beams to each side lie on one line
+  // with them, to so many sigmas; about a matching window of stereo, which rounds edges and corners off
+  // differently from every place. 0: all beams.
+  int straight_beams = 3;
+  double straight_sigmas = 2;
   // What no number of beams averages away in one look: cameras not quite aligned bend each view in the same
   // way. The pose that a look alone tells has at least these errors.
   double look_sigma_m = 0.015;
