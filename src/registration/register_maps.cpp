@@ -88,21 +88,21 @@ void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const Reg
   hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), is_far), hypotheses.end());
 }
 
-// Puts the hypotheses in the order of their elastic scores, best first, and returns those.
-std::vector<PoseScore> scoreAndSort(const MapEvidence& there, const MapEvidence& here,
-                                    std::vector<Hypothesis>& hypotheses) {
+// Puts the hypotheses in the order of their elastic scores, best first, and returns the scores.
+std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence& here,
+                                     std::vector<Hypothesis>& hypotheses) {
   std::vector<std::pair<PoseScore, Hypothesis>> scored;
   for (const Hypothesis& h : hypotheses)
     scored.emplace_back(scoreElastic(there, here, h.reference_from_current, {}), h);
   std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) {
     return a.first.agree - a.first.contradict > b.first.agree - b.first.contradict;
   });
-  std::vector<PoseScore> scores;
+  std::vector<JudgedPose> judged;
   for (std::size_t i = 0; i < scored.size(); ++i) {
-    scores.push_back(scored[i].first);
+    judged.push_back({scored[i].second.score, scored[i].first});
     hypotheses[i] = scored[i].second;
   }
-  return scores;
+  return judged;
 }
 
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
@@ -134,7 +134,7 @@ RegistrationOutcome registerMaps(const MapView& reference, const MapView& curren
                                                    : propose(reference, current, there, here);
   std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
   if (hints.prior) keepNear(best, *hints.prior, params);
-  const std::vector<PoseScore> scores = scoreAndSort(there, here, best);
+  const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
   if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
 
   RefinementOptions options;
@@ -144,8 +144,10 @@ RegistrationOutcome registerMaps(const MapView& reference, const MapView& curren
   const auto refined =
       refine(reference, current, best.front().reference_from_current, options, params.min_spread);
   if (!refined) return {{}, "too few edges agree"};
-  PoseEvidence evidence = weighScores(scores, params.fine_cell_m);
+  PoseEvidence evidence = weighPoses(judged, params.fine_cell_m);
   evidence.spread = refined->spread;
+  evidence.smaller_map_m =
+      static_cast<double>(std::min(there.edges.size(), here.edges.size())) * params.fine_cell_m;
   evidence.with_prior = hints.prior.has_value();
   if (const auto reason = reasonToRefuse(evidence, params)) return {{}, *reason};
 
@@ -156,7 +158,7 @@ RegistrationOutcome registerMaps(const MapView& reference, const MapView& curren
                                      refined->reference_from_current, kMatched);
   registration.rms_m = refined->rms_m;
   registration.overlap = overlapOf(there.coarse, here.coarse, refined->reference_from_current);
-  registration.agreement = scores.front().agreement();
+  registration.agreement = judged.front().elastic.agreement();
   registration.second_best = evidence.second_best;
   registration.probability = probabilityRight(evidence);
   return {registration, ""};
@@ -177,7 +179,10 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("focus_radius_m", params.focus_radius_m);
   visitor.field("max_clear_rival", params.max_clear_rival);
   visitor.field("min_agreeing_m", params.min_agreeing_m);
+  visitor.field("min_agreeing_share", params.min_agreeing_share);
+  visitor.field("min_agreeing_small_map_m", params.min_agreeing_small_map_m);
   visitor.field("min_agreeing_with_prior_m", params.min_agreeing_with_prior_m);
+  visitor.field("max_contradicting_share", params.max_contradicting_share);
   visitor.field("min_spread", params.min_spread);
   visitor.field("min_probability", params.min_probability);
 }

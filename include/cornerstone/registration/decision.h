@@ -1,10 +1,11 @@
 // Whether the evidence for the best pose singles it out. Everything is judged on both maps: what agrees, what
 // contradicts, how far the best different pose stays behind, and whether every direction is held.
 //
-// The probability of being right is a logistic model of three figures, fitted to the best poses of 1100 pairs
-// of windows (5 to 30 m wide, at random overlap, a third of them of different buildings) of laser maps of two
-// buildings. With 30 m of agreeing wall no wrong pose came near one half, there or among 500 pairs of
-// different buildings' maps.
+// The probability of being right is a logistic model of two figures: how much contradicts, and by how many of
+// its standard deviations the pose leads the best different one. Fitted to the best poses of 1100 pairs of
+// windows (5 to 30 m wide, at random overlap, a third of them of different buildings) of laser maps and of
+// 1750 pairs of stereo maps of three simulated worlds, most of them of different ones. No wrong pose came
+// above 0.91 there, among as many stereo pairs of other seeds, or among 500 pairs of other laser maps.
 #pragma once
 
 #include <optional>
@@ -16,18 +17,25 @@
 
 namespace cornerstone {
 
-struct PoseEvidence {
-  double agreeing_m =
-      0;  // length of wall, mean of both maps, that agrees; neighbourhoods may give way a little
-  double contradicting_m = 0;
-  double second_best = 0;   // value (agreeing less contradicting) of the best different pose over this one's
-  double clear_rival = 0;   // the same of the best different pose that next to nothing contradicts
-  double spread = 0;        // weakest over strongest direction of the refinement's information
-  bool with_prior = false;  // only poses near a prior were looked at
+// One pose, in edges of the thinned maps: as a rigid pose, and when neighbourhoods may give way a little.
+struct JudgedPose {
+  PoseScore rigid;
+  PoseScore elastic;
 };
 
-// The evidence for the first of several different scores, best first, in squares of square_m.
-PoseEvidence weighScores(const std::vector<PoseScore>& scores, double square_m);
+struct PoseEvidence {
+  double agreeing_m = 0;  // length of wall, mean of both maps; neighbourhoods may give way a little
+  double contradicting_m = 0;
+  double smaller_map_m = 0;  // length of wall of the map with less
+  double lead_sigmas = 0;    // of the rigid pose over the best different one, or over none at all
+  double second_best = 0;    // value (agreeing less contradicting) of the best different pose over this one's
+  double clear_rival = 0;    // the same of the best different pose that next to nothing contradicts
+  double spread = 0;         // weakest over strongest direction of the refinement's information
+  bool with_prior = false;   // only poses near a prior were looked at
+};
+
+// The evidence for the first of several different poses, best elastic score first, in squares of square_m.
+PoseEvidence weighPoses(const std::vector<JudgedPose>& poses, double square_m);
 
 double probabilityRight(const PoseEvidence& evidence);
 

@@ -31,16 +31,23 @@ struct RegistrationParams {
   // Standard deviation of the weight of the edges around a focus: what a robot sees at once.
   double focus_radius_m = 4.0;
   // Value of a different pose that next to nothing contradicts over the winner's, above which neither is
-  // believed: like offices in a row differ in how much of them the maps share, and in nothing else.
-  double max_clear_rival = 0.3;
-  // Length of wall that must agree: walls of different buildings agree over 25 m by coincidence, a corner or
-  // two near a prior over 4 m.
+  // believed: like offices in a row differ in how much of them the maps share, and in nothing else. A few
+  // walls stand free of contradictions anywhere.
+  double max_clear_rival = 0.4;
+  // Length of wall that must agree: walls of different buildings agree over 30 m by coincidence where one of
+  // the maps is large. Of small maps this share is enough, but never less than a few rooms.
   double min_agreeing_m = 30.0;
+  double min_agreeing_share = 0.65;
+  double min_agreeing_small_map_m = 20.0;
+  // A corner or two agree near a prior over 4 m by coincidence.
   double min_agreeing_with_prior_m = 8.0;
+  // Of the walls that both maps can judge: bent maps of one place reach 0.15, large wrong matches begin at
+  // 0.16.
+  double max_contradicting_share = 0.15;
   // Weakest over strongest direction of the information: a corridor has next to none along its axis.
   double min_spread = 0.05;
   // Of being right, by a model fitted to many pairs (decision.h): a wrong frame is far worse than none.
-  double min_probability = 0.9;
+  double min_probability = 0.95;
 };
 void describe(ParamVisitor& visitor, RegistrationParams& params);
 
