@@ -1,5 +1,7 @@
 #include "peers.h"
 
+#include <mrpt/maps/CMultiMetricMap.h>
+#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/poses/CPosePDFSOG.h>
@@ -109,14 +111,34 @@ mrpt::maps::COccupancyGridMap2D toMrpt(const GridMap& map) {
   return result;
 }
 
-std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current) {
+namespace {
+
+mrpt::maps::CMultiMetricMap withPoints(const GridMap& map, bool with_points) {
+  mrpt::maps::CMultiMetricMap result;
+  result.maps.push_back(std::make_shared<mrpt::maps::COccupancyGridMap2D>(toMrpt(map)));
+  if (!with_points) return result;
+  const auto points = std::make_shared<mrpt::maps::CSimplePointsMap>();
+  for (int row = 0; row < map.geometry.rows; ++row)
+    for (int col = 0; col < map.geometry.cols; ++col) {
+      if (map.occupied(row, col) <= 0.65F) continue;
+      const Eigen::Vector2f at_m = map.geometry.centreOf({col, row}).cast<float>();
+      points->insertPoint(at_m.x(), at_m.y(), 0);
+    }
+  result.maps.push_back(points);
+  return result;
+}
+
+}  // namespace
+
+std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, bool with_points) {
   // The aligner keeps features by the address of a map: every map is kept, so that no address comes twice.
-  static std::list<mrpt::maps::COccupancyGridMap2D> kept;
-  const auto& m1 = kept.emplace_back(toMrpt(reference));
-  const auto& m2 = kept.emplace_back(toMrpt(current));
+  static std::list<mrpt::maps::CMultiMetricMap> kept;
+  const auto& m1 = kept.emplace_back(withPoints(reference, with_points));
+  const auto& m2 = kept.emplace_back(withPoints(current, with_points));
   mrpt::math::CMatrixDouble33 covariance;
   covariance.setDiagonal(std::vector<double>{1e4, 1e4, 1e2});
   mrpt::slam::CGridMapAligner aligner;
+  aligner.setMinLoggingLevel(mrpt::system::LVL_ERROR);
   const auto answer = aligner.AlignPDF(&m1, &m2, mrpt::poses::CPosePDFGaussian({}, covariance));
   const auto modes = std::dynamic_pointer_cast<mrpt::poses::CPosePDFSOG>(answer);
   if (!modes || modes->empty()) return {};

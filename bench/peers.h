@@ -34,7 +34,9 @@ void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, 
 GridMap fromMrpt(const mrpt::maps::COccupancyGridMap2D& map);
 mrpt::maps::COccupancyGridMap2D toMrpt(const GridMap& map);
 
-// CGridMapAligner with its default options and a prior that says nothing; empty: no mode left.
-std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current);
+// CGridMapAligner with its default options and a prior that says nothing; empty: no mode left. with_points:
+// the occupied cells also as a point map, which its last step (ICP) needs; on grids alone it skips that
+// check.
+std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, bool with_points);
 
 }  // namespace cornerstone::bench
