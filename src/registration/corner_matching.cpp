@@ -11,8 +11,9 @@ namespace cornerstone {
 namespace {
 
 // The nearest corner of `others` to each of `corners` carried by a pose; -1: none within the limits.
-std::vector<int> nearestOf(const std::vector<CornerLandmark>& corners, const std::vector<CornerLandmark>& others,
-                           const Pose2& others_from_corners, const PairingLimits& limits) {
+std::vector<int> nearestOf(const std::vector<CornerLandmark>& corners,
+                           const std::vector<CornerLandmark>& others, const Pose2& others_from_corners,
+                           const PairingLimits& limits) {
   std::vector<int> nearest;
   for (const CornerLandmark& corner : corners) {
     const Pose2 expected = others_from_corners * corner.pose;
@@ -32,8 +33,9 @@ std::vector<int> nearestOf(const std::vector<CornerLandmark>& corners, const std
 
 }  // namespace
 
-CornerPairs pairNearest(const std::vector<CornerLandmark>& reference, const std::vector<CornerLandmark>& current,
-                        const Pose2& pose, const PairingLimits& limits) {
+CornerPairs pairNearest(const std::vector<CornerLandmark>& reference,
+                        const std::vector<CornerLandmark>& current, const Pose2& pose,
+                        const PairingLimits& limits) {
   const std::vector<int> of_current = nearestOf(current, reference, pose, limits);
   const std::vector<int> of_reference = nearestOf(reference, current, pose.inverse(), limits);
   CornerPairs pairs;
@@ -43,8 +45,9 @@ CornerPairs pairNearest(const std::vector<CornerLandmark>& reference, const std:
   return pairs;
 }
 
-std::optional<Pose2> solvePairs(const std::vector<CornerLandmark>& reference, const std::vector<CornerLandmark>& current,
-                                const CornerPairs& pairs, const Pose2& guess) {
+std::optional<Pose2> solvePairs(const std::vector<CornerLandmark>& reference,
+                                const std::vector<CornerLandmark>& current, const CornerPairs& pairs,
+                                const Pose2& guess) {
   if (pairs.size() < 2) return std::nullopt;
   Eigen::Vector2d pivot_m(0, 0);
   for (const auto& pair : pairs)

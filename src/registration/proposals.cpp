@@ -111,7 +111,8 @@ std::vector<double> DirectionMatch::peaks(std::size_t count) const {
 }
 
 std::vector<Pose2> proposeFromCorners(const std::vector<CornerLandmark>& reference,
-                                      const std::vector<CornerLandmark>& current, const DirectionMatch& directions) {
+                                      const std::vector<CornerLandmark>& current,
+                                      const DirectionMatch& directions) {
   std::vector<Pose2> poses;
   for (std::size_t r = 0; r < std::min(reference.size(), kMaxCorners); ++r) {
     for (std::size_t c = 0; c < std::min(current.size(), kMaxCorners); ++c) {

@@ -90,6 +90,13 @@ TEST(StereoMatcher, BareWallIsRefused) {
   EXPECT_EQ(shareOf(matched({without_noise, without_noise, {}}), Rejection::kNone), 0);
 }
 
+// The windows of large images, which tell patterns from bare walls; small images get smaller ones.
+StereoParams wideWindow() {
+  StereoParams params;
+  params.window_px = 7;
+  return params;
+}
+
 TEST(StereoMatcher, RepetitivePatternIsRefusedForItsUniqueness) {
   cv::RNG random(9);
   cv::Mat1f stripes(kSize), shifted(kSize);  // period 8 px: disparities 3, 11, 19, 27 match alike
@@ -100,7 +107,7 @@ TEST(StereoMatcher, RepetitivePatternIsRefusedForItsUniqueness) {
     }
   }
   const Disparity disparity =
-      matched({photographed(stripes, 2, 1, random), photographed(shifted, 2, 1, random), {}});
+      matched({photographed(stripes, 2, 1, random), photographed(shifted, 2, 1, random), {}}, wideWindow());
   const cv::Mat middle =
       disparity.rejection(cv::Rect(40, 10, 100, 100)) == static_cast<int>(Rejection::kUniqueness);
   EXPECT_GT(cv::countNonZero(middle), 0.9 * 100 * 100);
@@ -117,11 +124,11 @@ TEST(StereoMatcher, TopCameraSeesHorizontalStripes) {
   }
   StereoImages images{photographed(reference, 1, 1, random), photographed(reference, 1, 1, random),
                       photographed(top, 1, 1, random)};
-  const Disparity three = matched(images);
+  const Disparity three = matched(images, wideWindow());
   EXPECT_GT(shareOf(three, Rejection::kNone), 0.75);  // some rows do resemble others
   EXPECT_NEAR(three.disparity_px(60, 80), 4, 0.3);
   images.top.release();
-  EXPECT_LT(shareOf(matched(images), Rejection::kNone), 0.02);
+  EXPECT_LT(shareOf(matched(images, wideWindow()), Rejection::kNone), 0.02);
 }
 
 TEST(StereoMatcher, ThirdCameraMayStandAnywhereOnAnAxis) {

@@ -1,4 +1,5 @@
-// A small building of vertical walls for tests of scans and maps: exact ranges, and disparity images with noise.
+// A small building of vertical walls for tests of scans and maps: exact ranges, and disparity images with
+// noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,7 +56,9 @@ struct Room {
 // Two rooms joined by a corridor with a crossing, about 12 m x 9 m, with boxes: like a small office.
 inline Room officeRoom() {
   Room room;
-  const auto wall = [&](double x0, double y0, double x1, double y1) { room.walls.push_back({{x0, y0}, {x1, y1}}); };
+  const auto wall = [&](double x0, double y0, double x1, double y1) {
+    room.walls.push_back({{x0, y0}, {x1, y1}});
+  };
   room.addRectangle(0, 0, 12, 9);
   wall(0, 4, 2.5, 4), wall(3.5, 4, 7, 4), wall(8, 4, 12, 4);
   wall(0, 5.6, 4, 5.6), wall(5, 5.6, 9, 5.6), wall(10, 5.6, 12, 5.6);

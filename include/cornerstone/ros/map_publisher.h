@@ -26,7 +26,8 @@ class MapPublisher {
 
   std::uint32_t epochOf(const Mapper& mapper) const { return epoch_base_ + mapper.epoch(); }
 
-  std::uint32_t epoch_base_;  // the start's wall time in seconds: a restarted mapper is never taken for the old one
+  std::uint32_t
+      epoch_base_;  // the start's wall time in seconds: a restarted mapper is never taken for the old one
   std::string robot_;
   std::string map_frame_;
   ros::Publisher map_;

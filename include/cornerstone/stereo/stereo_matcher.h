@@ -26,8 +26,10 @@ struct StereoParams {
   // B 0.12 m).
   int max_disparity_px = 32;
   // Edge of the finest correlation window, odd, 3 to 7; the others are three and five times it. Smaller:
-  // noisier answers. Larger: obstacles grow by up to half of it.
-  int window_px = 5;
+  // noisier answers. Larger: obstacles grow by up to half of it, corners get round. 0: an eightieth of the
+  // image's width, made odd, so that it covers much the same angle at every size: 3 at 160 px, 5 at 320, 7
+  // from 480 on.
+  int window_px = 0;
   // Between a pixel's best and second-best local minimum, in standard deviations of the cost's noise. 0: any
   // winner will do; 2: safer, a twentieth fewer answers on clean images and a fifth fewer on noisy ones.
   double smallest_margin_sigmas = 1.5;
@@ -47,8 +49,9 @@ struct StereoParams {
   // Answers less certain than this have too little texture (or their cameras disagree): at 0.4 px two in
   // three are still within that.
   double largest_sigma_px = 0.4;
-  // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges.
-  int subpixel_support_px = 3;
+  // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges. 0: two less
+  // than the window (the scan averages columns again, so that width is all it would cost).
+  int subpixel_support_px = 0;
   // A surface with a smaller share of the image's pixels is dropped: 0.4% is 77 px of 160x120. Chance makes
   // blobs of half that on bare walls; a chair leg 4 px wide and 30 high is 120 px.
   double smallest_surface_share = 0.004;
@@ -67,6 +70,8 @@ class StereoMatcher {
   void match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
 
  private:
+  int windowFor(int image_width_px) const;
+  int supportFor(int image_width_px) const;
   void sweep(const StereoImages& images, const TrinocularRig& rig);
   void refine(Disparity& disparity);
   void dropSmallSurfaces(Disparity& disparity);
