@@ -120,10 +120,11 @@ class RegistrationNodelet : public nodelet::Nodelet {
       hints.prior.reset();
       answer = registerMaps(reference_.view(), own_.view(), hints, params_.registration).registration;
     }
-    if (answer) keepMatches(*answer);
     // Answers are compared, and followed, where the frame must be right.
-    tracker_->update(answer, hints.focus_in_current_m.value_or(knownCentre(own_.map)),
-                     ros::Time::now().toSec());
+    const double now_s = ros::Time::now().toSec();
+    tracker_->update(answer, hints.focus_in_current_m.value_or(knownCentre(own_.map)), now_s);
+    // An answer that the tracker holds back as an outlier must not lend its pairs to the frame that stands.
+    if (answer && tracker_->evidenceTime() == now_s) keepMatches(*answer);
   }
 
   // In its own map; empty while tf does not say.
@@ -195,7 +196,7 @@ class RegistrationNodelet : public nodelet::Nodelet {
   std::optional<RegistrationTracker> tracker_;
   std::optional<StageDiagnostics> diagnostics_;
   std::string refusal_;
-  std::vector<Corner> reference_corners_;  // the pairs of the newest answer
+  std::vector<Corner> reference_corners_;  // the pairs of the newest answer that the tracker took
   std::vector<Corner> current_corners_;
   ros::Publisher landmarks_publisher_;
   ros::Publisher markers_publisher_;
