@@ -65,10 +65,8 @@ struct Pairing {
     for (std::size_t i = 0; i < from.edges().size(); i += step) {
       const EdgePoint& edge = from.edges()[i];
       const Eigen::Vector2d normal = turn * edge.normal;
-      const int partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
-      if (partner < 0) continue;
-      const EdgePoint& other = to.edges()[static_cast<std::size_t>(partner)];
-      use(edge, other, (normal + other.normal).normalized());
+      const EdgePoint* partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
+      if (partner != nullptr) use(edge, *partner, (normal + partner->normal).normalized());
     }
   }
 };

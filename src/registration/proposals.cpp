@@ -24,8 +24,7 @@ std::optional<double> wallDirection(const EdgeIndex& index, const EdgePoint& edg
   double count = 0;
   Eigen::Vector2d sum(0, 0);
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  index.forEachNear(edge.position_m, [&](int i) {
-    const EdgePoint& other = index.edges()[static_cast<std::size_t>(i)];
+  index.forEachNear(edge.position_m, [&](const EdgePoint& other) {
     const Eigen::Vector2d offset = other.position_m - edge.position_m;
     if (offset.squaredNorm() > kWallReach_m * kWallReach_m ||
         std::abs(offset.dot(edge.normal)) > kWallDepth_m || other.normal.dot(edge.normal) < kSameWallCosine)

@@ -23,7 +23,7 @@ constexpr double kPriorStep_m = 0.4;  // of the poses tried around a prior: insi
 constexpr double kPriorStep_rad = 4 * M_PI / 180;
 
 MapEvidence evidenceOf(const MapView& view, const RegistrationParams& params) {
-  const cv::Mat1b states = cellStates(view.map, {});
+  const cv::Mat1b& states = view.landmarks.states;
   std::vector<EdgePoint> edges = thinEdges(view.landmarks.edges, params.fine_cell_m);
   Eigen::Vector2d middle(0, 0);
   for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
