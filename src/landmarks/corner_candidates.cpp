@@ -102,32 +102,53 @@ class Searcher {
   std::vector<Candidate> candidates_;
 };
 
-// Candidates near a better one of nearly its direction go.
-std::vector<Candidate> suppressDoubles(std::vector<Candidate> candidates, double apart_cells) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
-  constexpr int kNear = static_cast<int>(kMinApart_rad / (2 * M_PI) * kDirections);
-  std::vector<Candidate> kept;
-  for (const Candidate& candidate : candidates) {
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& better) {
-      const int x = better.cell.col - candidate.cell.col, y = better.cell.row - candidate.cell.row;
-      const int turn = std::abs(better.direction - candidate.direction);
-      return x * x + y * y < apart_cells * apart_cells && std::min(turn, kDirections - turn) <= kNear;
-    });
-    if (!known) kept.push_back(candidate);
+// Kept candidates by place: squares as wide as candidates must be apart.
+class KeptCandidates {
+ public:
+  KeptCandidates(const cv::Size& cells, double apart_cells)
+      : apart_cells_(apart_cells),
+        cols_(static_cast<int>(cells.width / apart_cells) + 1),
+        rows_(static_cast<int>(cells.height / apart_cells) + 1),
+        squares_(static_cast<std::size_t>(cols_ * rows_)) {}
+
+  // Keeps a candidate unless a kept one of nearly its direction is near.
+  bool keep(const Candidate& candidate) {
+    const int col = static_cast<int>(candidate.cell.col / apart_cells_);
+    const int row = static_cast<int>(candidate.cell.row / apart_cells_);
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
+      for (int c = std::max(col - 1, 0); c <= std::min(col + 1, cols_ - 1); ++c)
+        for (const Candidate& better : squares_[static_cast<std::size_t>(r * cols_ + c)])
+          if (isDouble(candidate, better)) return false;
+    squares_[static_cast<std::size_t>(row * cols_ + col)].push_back(candidate);
+    return true;
   }
-  return kept;
-}
+
+ private:
+  bool isDouble(const Candidate& a, const Candidate& b) const {
+    constexpr int kNear = static_cast<int>(kMinApart_rad / (2 * M_PI) * kDirections);
+    const int x = a.cell.col - b.cell.col, y = a.cell.row - b.cell.row;
+    const int turn = std::abs(a.direction - b.direction);
+    return x * x + y * y < apart_cells_ * apart_cells_ && std::min(turn, kDirections - turn) <= kNear;
+  }
+
+  double apart_cells_;
+  int cols_;
+  int rows_;
+  std::vector<std::vector<Candidate>> squares_;
+};
 
 }  // namespace
 
 std::vector<Pose2> findCornerCandidates(const DistanceField& field, const GridGeometry& geometry,
                                         const LandmarkParams& params) {
-  const std::vector<Candidate> candidates =
-      suppressDoubles(Searcher(field.cells(), params, geometry.resolution_m).search(),
-                      1.5 * params.candidate_spacing_m / geometry.resolution_m);
+  std::vector<Candidate> candidates = Searcher(field.cells(), params, geometry.resolution_m).search();
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+  KeptCandidates kept(field.cells().size(),
+                      std::max(1.5 * params.candidate_spacing_m / geometry.resolution_m, 1.0));
   std::vector<Pose2> poses;
   for (const Candidate& candidate : candidates) {
+    if (!kept.keep(candidate)) continue;
     const Eigen::Vector2d at = geometry.centreOf(candidate.cell);
     poses.push_back({at.x(), at.y(), wrapAngle(2 * M_PI * candidate.direction / kDirections)});
   }

@@ -8,14 +8,18 @@
 namespace cornerstone {
 namespace {
 
-constexpr double kFacesArmCosine = 0.80;  // 37 degrees: an edge that may belong to an arm
-constexpr int kSettleRounds = 3;          // edges are chosen anew at each; the choice stays after two
-constexpr double kConverged = 0.05;       // cells and degrees: a change "very small" to the paper
+constexpr double kFacesArmCosine = 0.80;   // 37 degrees: an edge that may belong to an arm
+constexpr double kMayFaceArmCosine = 0.6;  // the same before the arms have settled
+constexpr int kSettleRounds = 3;           // edges are chosen anew at each; the choice stays after two
+constexpr double kConverged = 0.05;        // cells and degrees: a change "very small" to the paper
 constexpr int kMaxBins = 64;
 
 int pointsPerArm(const LandmarkParams& params) {
   return std::max(static_cast<int>(std::lround(params.arm_length_m / params.model_spacing_m)) + 1, 3);
 }
+
+// Of an arm's length, for its support.
+int binsOf(const LandmarkParams& params) { return std::min(pointsPerArm(params) - 1, kMaxBins); }
 
 // What the edges beside both arms say of a corner pose.
 struct ArmEvidence {
@@ -29,7 +33,7 @@ struct ArmEvidence {
 ArmEvidence gather(const std::vector<EdgePoint>& edges, const Pose2& pose, double facing,
                    const LandmarkParams& params) {
   ArmEvidence evidence;
-  const int bins = std::min(pointsPerArm(params) - 1, kMaxBins);
+  const int bins = binsOf(params);
   std::array<std::bitset<kMaxBins>, 2> covered;
   const Eigen::Matrix2d rotation = pose.rotation();
   for (const EdgePoint& edge : edges) {
@@ -69,7 +73,7 @@ CornerFitter::CornerFitter(const DistanceField& field, const EdgeIndex& index, c
       residuals_(cost_.num_residuals()),
       jacobian_(cost_.num_residuals(), 3) {}
 
-Pose2 CornerFitter::fit(const Pose2& guess) {
+Pose2 CornerFitter::approach(const Pose2& guess) {
   const Eigen::Vector2d cells = geometry_.toCells(guess.translation());
   Eigen::Vector3d x(cells.x(), cells.y(), guess.yaw_rad * 180 / M_PI);
   double* jacobians[] = {jacobian_.data()};
@@ -87,22 +91,47 @@ Pose2 CornerFitter::fit(const Pose2& guess) {
   return {apex.x(), apex.y(), wrapAngle(x[2] * M_PI / 180)};
 }
 
-std::vector<EdgePoint> CornerFitter::edgesAround(const Pose2& corner) const {
+// Of either facing, the edges that may lie beside the arms while the corner settles; none where edges do not
+// cover the arms.
+std::array<std::vector<EdgePoint>, 2> CornerFitter::edgesAround(const Pose2& corner) const {
   const double reach_m =
       params_.dilation_m + params_.polish_reach_m;  // a step, then the search beside the arms
+  const int bins = binsOf(params_);
   const Eigen::Matrix2d rotation = corner.rotation();
-  std::vector<EdgePoint> near;
-  index_.forEachNear(corner.translation(), [&](const EdgePoint& edge) {
+  std::array<std::vector<EdgePoint>, 2> around;
+  std::array<std::array<std::bitset<kMaxBins>, 2>, 2> covered;
+  const double half_m = (0.5 * params_.arm_length_m + reach_m) * rotation.row(0).cwiseAbs().sum();
+  const Eigen::Vector2d middle = corner * Eigen::Vector2d::Constant(0.5 * params_.arm_length_m);
+  index_.forEachNear(middle, half_m, [&](const EdgePoint& edge) {
     const Eigen::Vector2d p = rotation.transpose() * (edge.position_m - corner.translation());
-    if (p.minCoeff() > -reach_m && p.minCoeff() < reach_m && p.maxCoeff() < params_.arm_length_m + reach_m)
-      near.push_back(edge);
+    if (p.minCoeff() < -reach_m || p.minCoeff() > reach_m || p.maxCoeff() > params_.arm_length_m + reach_m)
+      return;
+    const Eigen::Vector2d n = rotation.transpose() * edge.normal;
+    bool belongs[2] = {false, false};
+    for (int arm = 0; arm < 2; ++arm) {
+      const double faces = n[1 - arm], along = p[arm], away = std::abs(p[1 - arm]);
+      if (std::abs(faces) < kMayFaceArmCosine || away > reach_m) continue;
+      const std::size_t facing = faces > 0 ? 0 : 1;
+      belongs[facing] = true;
+      if (along >= 0 && along < params_.arm_length_m && away <= params_.polish_reach_m &&
+          std::abs(faces) >= kFacesArmCosine)
+        covered[facing][static_cast<std::size_t>(arm)].set(
+            static_cast<std::size_t>(along / params_.arm_length_m * bins));
+    }
+    for (std::size_t facing = 0; facing < 2; ++facing)
+      if (belongs[facing]) around[facing].push_back(edge);
   });
-  return near;
+  for (std::size_t facing = 0; facing < 2; ++facing)
+    if (static_cast<double>(std::min(covered[facing][0].count(), covered[facing][1].count())) <
+        params_.min_support * bins)
+      around[facing].clear();
+  return around;
 }
 
 std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, const std::vector<EdgePoint>& edges,
                                                    CornerKind kind) const {
   const double facing = kind == CornerKind::kInsideFree ? 1 : -1;
+  if (edges.empty()) return std::nullopt;
   Pose2 pose = near;
   ArmEvidence evidence;
   for (int round = 0; round <= kSettleRounds; ++round) {
@@ -128,11 +157,14 @@ std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, const std:
   return corner;
 }
 
-std::vector<CornerLandmark> CornerFitter::settle(const Pose2& near) const {
-  const std::vector<EdgePoint> edges = edgesAround(near);
+std::vector<CornerLandmark> CornerFitter::fit(const Pose2& guess) {
+  const Pose2 near = approach(guess);
+  const std::array<std::vector<EdgePoint>, 2> edges = edgesAround(near);
   std::vector<CornerLandmark> corners;
-  for (const CornerKind kind : {CornerKind::kInsideFree, CornerKind::kInsideSolid})
-    if (const auto corner = settle(near, edges, kind)) corners.push_back(*corner);
+  for (std::size_t facing = 0; facing < 2; ++facing) {
+    const CornerKind kind = facing == 0 ? CornerKind::kInsideFree : CornerKind::kInsideSolid;
+    if (const auto corner = settle(near, edges[facing], kind)) corners.push_back(*corner);
+  }
   return corners;
 }
 

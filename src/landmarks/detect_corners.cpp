@@ -46,12 +46,12 @@ Landmarks detectLandmarks(const GridMap& map, const LandmarkParams& params) {
   landmarks.edges = findEdges(map, landmarks.states, params.edges);
   if (landmarks.edges.empty()) return landmarks;
   const DistanceField field(landmarks.edges, map.geometry);
-  const EdgeIndex index(landmarks.edges, params.arm_length_m + params.polish_reach_m);
+  const EdgeIndex index(landmarks.edges, 0.5 * params.arm_length_m);
   CornerFitter fitter(field, index, map.geometry, params);
   std::vector<CornerLandmark> corners;
   for (const Pose2& candidate : findCornerCandidates(field, map.geometry, params)) {
-    const std::vector<CornerLandmark> settled = fitter.settle(fitter.fit(candidate));
-    corners.insert(corners.end(), settled.begin(), settled.end());
+    const std::vector<CornerLandmark> fitted = fitter.fit(candidate);
+    corners.insert(corners.end(), fitted.begin(), fitted.end());
   }
   landmarks.corners = suppressNear(std::move(corners), params.suppression_m);
   return landmarks;

@@ -121,19 +121,24 @@ std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
 EdgePoint onLocalLine(const EdgePoint& edge, const EdgeIndex& index, double radius_m) {
   double count = 0;
   Eigen::Vector2d sum(0, 0);
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  index.forEachNear(edge.position_m, [&](const EdgePoint& other) {
+  double xx = 0, xy = 0, yy = 0;
+  index.forEachNear(edge.position_m, radius_m, [&](const EdgePoint& other) {
     const Eigen::Vector2d offset = other.position_m - edge.position_m;
-    if (offset.squaredNorm() > radius_m * radius_m || other.normal.dot(edge.normal) < kSameWallCosine) return;
-    ++count;
-    sum += offset;
-    squares += offset * offset.transpose();
+    // A factor, not a branch: no processor foretells which neighbours count.
+    const double counts = static_cast<int>(offset.squaredNorm() <= radius_m * radius_m) &
+                          static_cast<int>(other.normal.dot(edge.normal) >= kSameWallCosine);
+    const Eigen::Vector2d counted = counts * offset;
+    count += counts;
+    sum += counted;
+    xx += counted.x() * offset.x();
+    xy += counted.x() * offset.y();
+    yy += counted.y() * offset.y();
   });
   if (count < 3) return edge;
   const Eigen::Vector2d mean = sum / count;
-  const Eigen::Matrix2d spread = squares / count - mean * mean.transpose();
   // The line's direction is half the angle of (xx - yy, 2 xy); the normal is across it.
-  const Eigen::Vector2d doubled(spread(0, 0) - spread(1, 1), 2 * spread(0, 1));
+  const Eigen::Vector2d doubled((xx - yy) / count - mean.x() * mean.x() + mean.y() * mean.y(),
+                                2 * (xy / count - mean.x() * mean.y()));
   const double length = doubled.norm();
   if (length <= 0) return edge;
   const double along_x = std::sqrt(std::max(0.5 + 0.5 * doubled.x() / length, 0.0));
@@ -177,7 +182,7 @@ cv::Mat1b cellStates(const GridMap& map, const EdgeParams& params) {
 
 std::vector<EdgePoint> findEdges(const GridMap& map, const cv::Mat1b& states, const EdgeParams& params) {
   const double radius_m = std::max(params.smoothing_m, 2 * map.geometry.resolution_m);
-  const EdgeIndex index(findFaces(map, states), radius_m);
+  const EdgeIndex index(findFaces(map, states), 0.5 * radius_m);
   std::vector<EdgePoint> edges;
   edges.reserve(index.edges().size());
   for (const EdgePoint& face : index.edges()) edges.push_back(onLocalLine(face, index, radius_m));

@@ -23,14 +23,14 @@ constexpr double kPriorStep_m = 0.4;  // of the poses tried around a prior: insi
 constexpr double kPriorStep_rad = 4 * M_PI / 180;
 
 MapEvidence evidenceOf(const MapView& view, const RegistrationParams& params) {
-  const cv::Mat1b& states = view.landmarks.states;
   std::vector<EdgePoint> edges = thinEdges(view.landmarks.edges, params.fine_cell_m);
   Eigen::Vector2d middle(0, 0);
   for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
   std::vector<EdgeSample> samples = samplesOf(edges);
-  EvidenceGrid coarse(view.map, states, thinEdges(edges, params.coarse_cell_m), params.coarse_cell_m,
+  SquareCounts counts = countSquares(view.map.geometry, view.landmarks.states, params.fine_cell_m);
+  EvidenceGrid coarse(inLargerSquares(counts, params.coarse_cell_m), thinEdges(edges, params.coarse_cell_m),
                       params.coarse_reach_m);
-  EvidenceGrid fine(view.map, states, edges, params.fine_cell_m, params.fine_reach_m);
+  EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
   return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
 }
 
@@ -81,10 +81,8 @@ std::vector<Pose2> propose(const MapView& reference, const MapView& current, con
 // Far from the prior nothing counts, neither as an answer nor as a rival.
 void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const RegistrationParams& params) {
   const Eigen::Vector2d origin(0, 0);  // of the current map's frame: what the prior places
-  const auto is_far = [&](const Hypothesis& h) {
-    return areDifferent(h.reference_from_current, prior, origin, params.prior_radius_m,
-                        params.prior_angle_rad);
-  };
+  const PoseDistance limits{origin, params.prior_radius_m, params.prior_angle_rad};
+  const auto is_far = [&](const Hypothesis& h) { return limits.apart(h.reference_from_current, prior); };
   hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), is_far), hypotheses.end());
 }
 
@@ -108,16 +106,16 @@ std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
 std::optional<RefinedPose> refine(const MapView& reference, const MapView& current, const Pose2& guess,
                                   const RefinementOptions& options, double min_spread) {
-  const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m);
-  const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m);
+  const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m / 3);
+  const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m / 3);
   RefinementOptions everywhere = options;
   everywhere.focus_in_current_m.reset();
   const auto whole = refineOnEdges(reference_index, current_index, guess, everywhere);
   if (!whole || !options.focus_in_current_m) return whole;
   auto local = refineOnEdges(reference_index, current_index, whole->reference_from_current, options);
   if (!local || local->spread < min_spread ||
-      areDifferent(local->reference_from_current, whole->reference_from_current, *options.focus_in_current_m,
-                   options.first_reach_m, kMergeAngle_rad))
+      PoseDistance{*options.focus_in_current_m, options.first_reach_m, kMergeAngle_rad}.apart(
+          local->reference_from_current, whole->reference_from_current))
     return whole;
   local->spread = whole->spread;
   return local;
@@ -132,7 +130,7 @@ RegistrationOutcome registerMaps(const MapView& reference, const MapView& curren
   const MapEvidence there = evidenceOf(reference, params), here = evidenceOf(current, params);
   const std::vector<Pose2> proposals = hints.prior ? proposeAround(*hints.prior, reference, current, params)
                                                    : propose(reference, current, there, here);
-  std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
+  std::vector<Hypothesis> best = searchPoses({there, here}, proposals, params);
   if (hints.prior) keepNear(best, *hints.prior, params);
   const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
   if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};

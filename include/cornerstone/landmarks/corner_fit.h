@@ -4,6 +4,7 @@
 // leaves the neighbourhood of its first guess, or where the model stays too far from the edges.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -19,14 +20,14 @@ class CornerFitter {
   CornerFitter(const DistanceField& field, const EdgeIndex& index, const GridGeometry& geometry,
                const LandmarkParams& params);
 
-  // The corner nearest to a first guess, by the distance field.
-  Pose2 fit(const Pose2& guess);
-
-  // The corners near a pose, at most one of each kind, from the edges that face the right way.
-  std::vector<CornerLandmark> settle(const Pose2& near) const;
+  // The corners near a first guess, at most one of each kind.
+  std::vector<CornerLandmark> fit(const Pose2& guess);
 
  private:
-  std::vector<EdgePoint> edgesAround(const Pose2& corner) const;
+  std::array<std::vector<EdgePoint>, 2> edgesAround(const Pose2& corner) const;
+  // The pose nearest to a first guess, by the distance field.
+  Pose2 approach(const Pose2& guess);
+  // The corner of one kind, from the edges that face the right way.
   std::optional<CornerLandmark> settle(const Pose2& near, const std::vector<EdgePoint>& edges,
                                        CornerKind kind) const;
 
