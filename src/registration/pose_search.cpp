@@ -45,11 +45,13 @@ std::vector<Hypothesis> bestApart(const std::vector<Hypothesis>& sorted, const P
 // What a pose is worth at a look.
 struct Judge {
   const EvidencePair& maps;
-  double contradiction;
+  const RegistrationParams& params;
 
   Hypothesis operator()(const Pose2& pose, const Look& look) const {
     const PoseScore score = scorePose(maps, pose, look);
-    return {pose, score, score.agree - contradiction * score.contradict};
+    const double weight =
+        look.level == ScoreLevel::kCoarse ? params.coarse_contradiction : params.contradiction;
+    return {pose, score, score.agree - weight * score.contradict};
   }
 };
 
@@ -104,7 +106,7 @@ bool PoseDistance::apart(const Pose2& a, const Pose2& b) const {
 
 std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<Pose2>& proposals,
                                     const RegistrationParams& params) {
-  const Judge judge{maps, params.contradiction};
+  const Judge judge{maps, params};
   const PoseDistance same{maps.current.middle_m, kSame_m, kSame_rad};
   std::vector<Hypothesis> poses;
   poses.reserve(proposals.size());
@@ -119,7 +121,7 @@ std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<
        {std::pair(Climb{judge, {ScoreLevel::kCoarse, kCoarseClimbSamples}, {0.4, 4 * M_PI / 180, 3}},
                   kCoarseKept),
         std::pair(Climb{judge, {ScoreLevel::kFine, kGlanceFineSamples}, {0.2, M_PI / 180, 2}}, kClimbed),
-        std::pair(Climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, 0.5 * M_PI / 180, 2}},
+        std::pair(Climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, 0.5 * M_PI / 180, 3}},
                   kClimbed)}) {
     for (Hypothesis& h : poses) h = climb.from(h.reference_from_current);
     sortBestFirst(poses);

@@ -68,12 +68,15 @@ std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, c
   return poses;
 }
 
-std::vector<Pose2> propose(const MapView& reference, const MapView& current, const MapEvidence& there,
-                           const MapEvidence& here) {
+std::vector<Pose2> propose(const MapView& reference, const MapView& current, const EvidencePair& maps,
+                           const RegistrationParams& params) {
+  const auto& [there, here] = maps;
   const DirectionMatch directions(there.edges, here.edges);
   std::vector<Pose2> poses =
       proposeFromCorners(reference.landmarks.corners, current.landmarks.corners, directions);
-  const std::vector<Pose2> by_walls = proposeFromWalls(there, here, directions.peaks(kMaxYaws), {});
+  WallSearchOptions options;
+  options.contradiction = params.coarse_contradiction;
+  const std::vector<Pose2> by_walls = proposeFromWalls(maps, directions.peaks(kMaxYaws), options);
   poses.insert(poses.end(), by_walls.begin(), by_walls.end());
   return mergeProposals(poses, here.middle_m, kMergeSquare_m, kMergeAngle_rad);
 }
@@ -129,7 +132,7 @@ RegistrationOutcome registerMaps(const MapView& reference, const MapView& curren
   if (current.landmarks.edges.empty()) return {{}, "the current map has no edges"};
   const MapEvidence there = evidenceOf(reference, params), here = evidenceOf(current, params);
   const std::vector<Pose2> proposals = hints.prior ? proposeAround(*hints.prior, reference, current, params)
-                                                   : propose(reference, current, there, here);
+                                                   : propose(reference, current, {there, here}, params);
   std::vector<Hypothesis> best = searchPoses({there, here}, proposals, params);
   if (hints.prior) keepNear(best, *hints.prior, params);
   const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
@@ -171,6 +174,7 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("fine_cell_m", params.fine_cell_m);
   visitor.field("fine_reach_m", params.fine_reach_m);
   visitor.field("contradiction", params.contradiction);
+  visitor.field("coarse_contradiction", params.coarse_contradiction);
   visitor.field("different_m", params.different_m);
   visitor.degrees("different_deg", params.different_rad);
   visitor.field("refine_reach_m", params.refine_reach_m);

@@ -42,17 +42,27 @@ struct Spectra {
   cv::Mat says;   // what the map says to an edge there
 };
 
-Spectra transform(const Turned& map, const Eigen::Vector2f& low, float square_m, int size) {
+// The grid of the transform.
+struct Raster {
+  float square_m;
+  int size;
+  float contradiction;  // weight of what says that no edge is there
+};
+
+Spectra transform(const Turned& map, const Eigen::Vector2f& low, const Raster& raster) {
+  const auto& [square_m, size, contradiction] = raster;
   cv::Mat1f edges(size, size, 0.0f), says(size, size, 0.0f);
   const auto at = [&](cv::Mat1f& grid, const Eigen::Vector2f& p) -> float& {
-    const Eigen::Vector2f cell = (map.rotation * p - low) / square_m;
-    return grid(std::clamp(static_cast<int>(cell.y() + 0.5f), 0, size - 1),
-                std::clamp(static_cast<int>(cell.x() + 0.5f), 0, size - 1));
+    const Eigen::Vector2f cell = (map.rotation * p - low) / raster.square_m;
+    return grid(std::clamp(static_cast<int>(cell.y() + 0.5f), 0, raster.size - 1),
+                std::clamp(static_cast<int>(cell.x() + 0.5f), 0, raster.size - 1));
   };
   for (const EdgeSample& sample : map.samples) at(edges, sample.position_m) += 1;
   const auto share = static_cast<float>(std::pow(map.opinion_cell_m / square_m, 2) / kFullEvidence);
   for (const Opinion& opinion : map.opinions)
-    at(says, opinion.centre_m) += share * static_cast<float>(opinion.evidence);
+    at(says, opinion.centre_m) +=
+        share * (opinion.evidence < 0 ? contradiction * static_cast<float>(opinion.evidence)
+                                      : static_cast<float>(opinion.evidence));
   Spectra spectra;
   cv::dft(edges, spectra.edges);
   cv::dft(says, spectra.says);
@@ -94,10 +104,11 @@ class Correlation {
     there_size_m_ = (there_bounds.high - there_bounds.low).maxCoeff();
     // Turned by any yaw the current map is no larger than its diagonal.
     const float needed_m = there_size_m_ + (here_bounds.high - here_bounds.low).norm();
-    square_m_ = std::max(static_cast<float>(options.square_m),
-                         needed_m / static_cast<float>(options.max_size_squares - 4));
-    size_ = cv::getOptimalDFTSize(static_cast<int>(std::ceil(needed_m / square_m_)) + 4);
-    fixed_ = transform(there, low_, square_m_, size_);
+    const float square_m = std::max(static_cast<float>(options.square_m),
+                                    needed_m / static_cast<float>(options.max_size_squares - 4));
+    raster_ = {square_m, cv::getOptimalDFTSize(static_cast<int>(std::ceil(needed_m / square_m)) + 4),
+               static_cast<float>(options.contradiction)};
+    fixed_ = transform(there, low_, raster_);
   }
 
   // The best shifts of the current map turned by a yaw and, on request, by the opposite one: that only turns
@@ -105,15 +116,15 @@ class Correlation {
   void search(double yaw, bool opposite_too, std::vector<Pose2>& poses) const {
     const Turned here = here_.by(yaw);
     const Eigen::Vector2f low = here.bounds().low;
-    const Spectra moving = transform(here, low, square_m_, size_);
+    const Spectra moving = transform(here, low, raster_);
     for (const cv::Point& peak : highest(product(moving, true), peaks_)) {
-      const Eigen::Vector2f shift = square_m_ * Eigen::Vector2f(unwrapped(peak.x), unwrapped(peak.y));
+      const Eigen::Vector2f shift = raster_.square_m * Eigen::Vector2f(unwrapped(peak.x), unwrapped(peak.y));
       poses.push_back(poseOf(shift + low_ - low, yaw));
     }
     if (!opposite_too) return;
     for (const cv::Point& peak : highest(product(moving, false), peaks_)) {
       const Eigen::Vector2f shift =
-          square_m_ * Eigen::Vector2f(static_cast<float>(peak.x), static_cast<float>(peak.y));
+          raster_.square_m * Eigen::Vector2f(static_cast<float>(peak.x), static_cast<float>(peak.y));
       poses.push_back(poseOf(shift + low_ + low, wrapAngle(yaw + M_PI)));
     }
   }
@@ -130,8 +141,9 @@ class Correlation {
   // Shifts beyond the reference map's size are negative ones, wrapped round.
   float unwrapped(int shift) const {
     const auto squares = static_cast<float>(shift);
-    return squares * square_m_ > there_size_m_ + 2 * square_m_ ? squares - static_cast<float>(size_)
-                                                               : squares;
+    return squares * raster_.square_m > there_size_m_ + 2 * raster_.square_m
+               ? squares - static_cast<float>(raster_.size)
+               : squares;
   }
   static Pose2 poseOf(const Eigen::Vector2f& shift_m, double yaw) { return {shift_m.x(), shift_m.y(), yaw}; }
 
@@ -139,15 +151,15 @@ class Correlation {
   std::size_t peaks_;
   Eigen::Vector2f low_;
   float there_size_m_;
-  float square_m_;
-  int size_;
+  Raster raster_;
   Spectra fixed_;
 };
 
 }  // namespace
 
-std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvidence& current,
-                                    const std::vector<double>& yaws, const WallSearchOptions& options) {
+std::vector<Pose2> proposeFromWalls(const EvidencePair& maps, const std::vector<double>& yaws,
+                                    const WallSearchOptions& options) {
+  const auto& [reference, current] = maps;
   const std::vector<Opinion> reference_says = reference.coarse.opinions(),
                              current_says = current.coarse.opinions();
   const Correlation correlation(
