@@ -11,7 +11,7 @@
 namespace cornerstone {
 
 struct WallSearchOptions {
-  double square_m = 0.4;       // of the correlated grids: within the coarse reach
+  double square_m = 0.5;       // of the correlated grids: the coarse reach
   int max_size_squares = 512;  // of the transform: larger maps get larger squares
   std::size_t peaks = 20;      // poses for each yaw
   double contradiction = 3;    // weight of an edge on free space against an edge on an edge
