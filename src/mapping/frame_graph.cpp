@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "cornerstone/base/errors.h"
+#include "cornerstone/base/sqrt_information.h"
 #include "cornerstone/mapping/frame_graph_costs.h"
+#include "cornerstone/mapping/point_to_line_cost.h"
 
 namespace cornerstone {
 namespace {
@@ -44,6 +46,7 @@ void describe(ParamVisitor& visitor, FrameGraphParams& params) {
   visitor.degrees("match_turn_deg", params.match_turn_rad);
   visitor.field("match_tries", params.match_tries);
   visitor.field("match_weight", params.match_weight);
+  visitor.field("place_weight", params.place_weight);
   visitor.field("loss_sigmas", params.loss_sigmas);
   visitor.field("solve_after_frames", params.solve_after_frames);
   visitor.field("redraw_looks_per_scan", params.redraw_looks_per_scan);
@@ -76,6 +79,7 @@ void requireValid(const FrameGraphParams& params) {
   requireWithin(params.match_turn_rad, 0.01, 3.2, "match_turn_deg");
   requireWithin(params.match_tries, 1, 10000, "match_tries");
   requireWithin(params.match_weight, 1e-3, 1, "match_weight");
+  requireWithin(params.place_weight, 1e-3, 1, "place_weight");
   requireWithin(params.loss_sigmas, 0.1, 100, "loss_sigmas");
   requireWithin(params.solve_after_frames, 1, 100000, "solve_after_frames");
   requireWithin(params.redraw_looks_per_scan, 2, 10000, "redraw_looks_per_scan");
@@ -121,16 +125,65 @@ std::vector<std::size_t> FrameGraph::framesNearby(const Pose2& map_from_base) co
   return spread;
 }
 
-void FrameGraph::addFrame(const RangeScan& scan, const Pose2& odom_from_base, const Pose2& map_from_base) {
+PoseEstimate FrameGraph::addFrame(const RangeScan& scan, const Pose2& odom_from_base,
+                                  const PoseEstimate& prior) {
   // Where the robot has gone on, the frame's own look is enough; where it stayed, the newest are.
   if (!frames_.empty() && frames_.back().looks.size() <= kLooksKept) frames_.back().looks.resize(1);
-  KeyFrame frame = makeKeyFrame(scan, odom_from_base, map_from_base, params_.piece);
-  for (const std::size_t i : framesNearby(map_from_base)) {
-    const Pose2 expected = frames_[i].map_from_base.inverse() * map_from_base;
-    const auto match = matchFrames(frames_[i], frame, expected, calibration_, params_.match);
+  KeyFrame frame = makeKeyFrame(scan, odom_from_base, prior.map_from_base, params_.piece);
+  const std::size_t first_match = matches_.size();
+  for (const std::size_t i : framesNearby(prior.map_from_base)) {
+    const Pose2 expected = frames_[i].map_from_base.inverse() * prior.map_from_base;
+    const auto match = matchFrames(frames_[i], frame, {expected, calibration_}, params_.match);
     if (match) matches_.push_back({i, frames_.size(), *match});
   }
+  const PoseEstimate placed = placeNewest(prior, first_match);
+  frame.map_from_base = placed.map_from_base;
   frames_.push_back(std::move(frame));
+  return placed;
+}
+
+PoseEstimate FrameGraph::placeNewest(const PoseEstimate& prior, std::size_t first_match) const {
+  if (first_match == matches_.size()) return prior;
+  PoseBlock pose = blockOf(prior.map_from_base);
+  const Eigen::Vector3d expected(pose[0], pose[1], pose[2]);
+  std::vector<PoseBlock> earlier;
+  earlier.reserve(matches_.size() - first_match);  // Ceres keeps pointers to these
+  std::array<double, 2> calibration = {calibration_.offset_per_m, calibration_.slope_per_m};
+  ceres::Problem problem;
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PosePriorCost, 3, 3>(
+                               new PosePriorCost(expected, sqrtInformation(prior.covariance))),
+                           nullptr, pose.data());
+  for (std::size_t i = first_match; i < matches_.size(); ++i) {
+    earlier.push_back(blockOf(frames_[matches_[i].earlier].map_from_base));
+    addMatch(problem, matches_[i].match, params_.place_weight,
+             {earlier.back().data(), pose.data(), calibration.data()});
+    problem.SetParameterBlockConstant(earlier.back().data());
+  }
+  problem.SetParameterBlockConstant(calibration.data());
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 10;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+
+  ceres::Covariance::Options covariance_options;
+  covariance_options.algorithm_type = ceres::DENSE_SVD;
+  ceres::Covariance covariance(covariance_options);
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> of_pose;
+  const std::vector<const double*> blocks = {pose.data()};
+  if (!summary.IsSolutionUsable() || !covariance.Compute(blocks, &problem) ||
+      !covariance.GetCovarianceMatrix(blocks, of_pose.data()) || !poseOf(pose).isFinite())
+    return prior;
+  return {poseOf(pose), of_pose};
+}
+
+void FrameGraph::addMatch(ceres::Problem& problem, const FrameMatch& match, double weight,
+                          const MatchBlocks& blocks) const {
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<FrameMatchCost, 5, 3, 3, 2>(new FrameMatchCost(match)),
+      new ceres::ScaledLoss(new ceres::CauchyLoss(params_.loss_sigmas), weight, ceres::TAKE_OWNERSHIP),
+      blocks.earlier, blocks.later, blocks.calibration);
 }
 
 void FrameGraph::addLook(const RangeScan& scan, const Pose2& odom_from_base) {
@@ -168,11 +221,8 @@ GraphSolution FrameGraph::solve() {
                              nullptr, poses[i - 1].data(), poses[i].data(), rates.data());
   }
   for (const Match& match : matches_)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<FrameMatchCost, 5, 3, 3, 2>(new FrameMatchCost(match.match)),
-        new ceres::ScaledLoss(new ceres::CauchyLoss(params_.loss_sigmas), params_.match_weight,
-                              ceres::TAKE_OWNERSHIP),
-        poses[match.earlier].data(), poses[match.later].data(), calibration.data());
+    addMatch(problem, match.match, params_.match_weight,
+             {poses[match.earlier].data(), poses[match.later].data(), calibration.data()});
   problem.AddParameterBlock(calibration.data(), 2);
   if (calibration_sigma > 0)
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ZeroPriorCost<2>, 2, 2>(

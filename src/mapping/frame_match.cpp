@@ -111,11 +111,11 @@ FrameMatch quadraticOf(const Sums& sums, const Pose2& pose, const Eigen::Vector2
 
 }  // namespace
 
-std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& later, const Pose2& expected,
-                                      const ScanCalibration& calibration, const FrameMatchParams& params) {
+std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& later,
+                                      const FrameMatchStart& start, const FrameMatchParams& params) {
   if (earlier.pieces.empty() || later.pieces.empty()) return std::nullopt;
-  const Matching matching(earlier, later, calibration, params);
-  Pose2 pose = expected;
+  const Matching matching(earlier, later, start.calibration, params);
+  Pose2 pose = start.earlier_from_later;
   for (int round = 0; round < kRounds; ++round) {
     const Sums sums = matching.sumAt(pose, round < kWideRounds ? params.gate_m : params.gate_m / 2);
     if (!enough(sums, params)) return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& l
   }
   const Sums sums = matching.sumAt(pose, params.gate_m / 2);
   if (!enough(sums, params)) return std::nullopt;
-  return quadraticOf(sums, pose, {calibration.offset_per_m, calibration.slope_per_m}, params);
+  return quadraticOf(sums, pose, {start.calibration.offset_per_m, start.calibration.slope_per_m}, params);
 }
 
 }  // namespace cornerstone

@@ -37,7 +37,8 @@ WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPiece
   const double along = std::sqrt(std::max(0.0, 1 - incidence * incidence));
   const double bearing_m = params.bearing_sigma_beams * middle.width_rad * middle.range_m;
   const double across_m = std::hypot(middle.sigma_m * incidence, bearing_m * along);
-  if (incidence < params.min_incidence || scatter_m > params.max_sigmas * middle.sigma_m * incidence + params.max_scatter_m)
+  if (incidence < params.min_incidence ||
+      scatter_m > params.max_sigmas * middle.sigma_m * incidence + params.max_scatter_m)
     return piece;
   const double range_m = mean_m.norm(), bearing_rad = std::atan2(mean_m.y(), mean_m.x());
   const Eigen::Matrix2d by_calibration =

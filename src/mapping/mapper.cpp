@@ -80,27 +80,31 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   if (params_.fit_scans) fit = fitScan(scan, grid_, {filter_.pose(), newShare(scan)}, params_.fit);
   if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
   contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
-  const Pose2 map_from_base = filter_.pose().map_from_base;
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
   const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
+  const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
+  if (remembers) remember(raw, odom_from_base);
   if (insert) {
-    grid_.insert(scan, map_from_base, motion());
-    last_inserted_ = map_from_base;
-    if (params_.graph.use && params_.fit_scans && !loaded_) remember(raw, odom_from_base);
+    grid_.insert(scan, filter_.pose().map_from_base, motion());
+    last_inserted_ = filter_.pose().map_from_base;
   }
+  if (remembers) straighten();
   map_from_odom_ = filter_.pose().map_from_base * odom_from_base.inverse();
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
 }
 
 void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
   if (graph_.frameDue(odom_from_base)) {
-    graph_.addFrame(scan, odom_from_base, filter_.pose().map_from_base);
+    filter_.correct(graph_.addFrame(scan, odom_from_base, filter_.pose()));
   } else {
     graph_.addLook(scan, odom_from_base);
   }
+}
+
+void Mapper::straighten() {
   if (redraw_) {
     redraw();
   } else if (graph_.solveDue()) {

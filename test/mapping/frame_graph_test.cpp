@@ -55,6 +55,9 @@ TEST(FrameGraphCosts, PriorHasTrueDerivatives) {
       {{0.3, -0.1}});
 }
 
+// A pose along x, known to 2 cm and a degree.
+PoseEstimate at(double x_m) { return {{x_m, 0, 0}, Eigen::Vector3d(4e-4, 4e-4, 3e-4).asDiagonal()}; }
+
 struct Driven {
   FrameGraph graph;
   Pose2 last_by_odometry, last_true;
@@ -75,7 +78,7 @@ Driven drive(const FrameGraphParams& params, const test::TourParams& tour, const
             : driven.graph.frames().back().map_from_base *
                   (driven.graph.frames().back().odom_from_base.inverse() * step.odom_from_base);
     driven.graph.addFrame(test::scanOf(room, step.map_from_base, needed), step.odom_from_base,
-                          corrected_pose);
+                          {corrected_pose, at(0).covariance});
     if (driven.graph.solveDue()) driven.graph.adopt(driven.graph.solve());
     driven.last_by_odometry = step.odom_from_base;
     driven.last_true = start.inverse() * step.map_from_base;
@@ -102,6 +105,22 @@ TEST(FrameGraph, BendsADriftingWayStraightAndLearnsTheCalibration) {
   EXPECT_NEAR(driven.graph.calibration().slope_per_m, needed.slope_per_m, 0.002);
 }
 
+TEST(FrameGraph, ANewFrameIsPlacedByTheFramesThatStand) {
+  FrameGraph graph({}, OdometryNoise{});
+  const test::Room room = test::officeRoom();
+  const auto add = [&](const Pose2& truth, const Pose2& claimed) {
+    return graph.addFrame(test::scanOf(room, truth), claimed, {claimed, 9 * at(0).covariance});
+  };
+  const PoseEstimate first = add({2, 2, 0.7}, {2, 2, 0.7});
+  EXPECT_NEAR(first.map_from_base.x_m, 2, 1e-9);  // nothing to hold it against
+  for (int i = 1; i < 6; ++i) add({2 + 0.1 * i, 2, 0.7}, {2 + 0.1 * i, 2, 0.7});
+  const PoseEstimate placed = add({2.6, 2, 0.75}, {2.63, 1.98, 0.77});
+  EXPECT_NEAR(placed.map_from_base.x_m, 2.6, 0.012);
+  EXPECT_NEAR(placed.map_from_base.y_m, 2.0, 0.012);
+  EXPECT_NEAR(placed.map_from_base.yaw_rad, 0.75, 0.008);
+  EXPECT_LT(placed.covariance(2, 2), at(0).covariance(2, 2) / 2);
+}
+
 TEST(FrameGraph, SensorsWithoutACommonErrorGetNoCalibration) {
   FrameGraph graph({}, OdometryNoise{});
   const test::Room room = test::officeRoom();
@@ -109,7 +128,7 @@ TEST(FrameGraph, SensorsWithoutACommonErrorGetNoCalibration) {
     const Pose2 pose{2 + 0.1 * i, 2, 0.7 + 0.1 * i};
     RangeScan scan = test::scanOf(room, pose, {0.01, 0});
     scan.calibration_sigma_per_m = 0;
-    graph.addFrame(scan, pose, pose);
+    graph.addFrame(scan, pose, {pose, at(0).covariance});
   }
   EXPECT_GT(graph.matchCount(), 6U);
   EXPECT_EQ(graph.solve().calibration.offset_per_m, 0);
@@ -118,13 +137,13 @@ TEST(FrameGraph, SensorsWithoutACommonErrorGetNoCalibration) {
 TEST(FrameGraph, KeepsTheNewestLooksOfARobotThatStaysAndOneOfARobotThatGoesOn) {
   FrameGraph graph({}, OdometryNoise{});
   const RangeScan scan = test::scanOf(test::officeRoom(), {2, 2, 0.7});
-  graph.addFrame(scan, {}, {});
+  graph.addFrame(scan, {}, at(0));
   for (int i = 0; i < 30; ++i) graph.addLook(scan, {0.001 * i, 0, 0});
   ASSERT_EQ(graph.frames()[0].looks.size(), 11U);
   EXPECT_NEAR(graph.frames()[0].looks.back().frame_from_base.x_m, 0.029, 1e-9);
-  graph.addFrame(scan, {0.3, 0, 0}, {0.3, 0, 0});
+  graph.addFrame(scan, {0.3, 0, 0}, at(0.3));
   graph.addLook(scan, {0.4, 0, 0});
-  graph.addFrame(scan, {0.6, 0, 0}, {0.6, 0, 0});
+  graph.addFrame(scan, {0.6, 0, 0}, at(0.6));
   EXPECT_EQ(graph.frames()[0].looks.size(), 11U);
   EXPECT_EQ(graph.frames()[1].looks.size(), 1U);
 }

@@ -39,7 +39,7 @@ TEST(FrameMatch, FindsTheMotionBetweenTwoLooks) {
   const Pose2 before{2, 2, 0.7}, after{2.3, 2.25, 0.85};
   const Pose2 truth = before.inverse() * after;
   const Pose2 guess{truth.x_m + 0.08, truth.y_m - 0.06, truth.yaw_rad + 0.03};
-  const auto match = matchFrames(frameAt(before), frameAt(after), guess, {}, {});
+  const auto match = matchFrames(frameAt(before), frameAt(after), {guess, {}}, {});
   ASSERT_TRUE(match);
   EXPECT_NEAR(match->earlier_from_later.x_m, truth.x_m, 0.005);
   EXPECT_NEAR(match->earlier_from_later.y_m, truth.y_m, 0.005);
@@ -52,16 +52,16 @@ TEST(FrameMatch, KnowsHowTheMotionHangsOnTheCalibration) {
   const ScanCalibration needed{0.005, 0.003};  // 0.05 and 0.03 px over f B = 9.6 px m
   const Pose2 before{1.2, 2.2, 0.3}, after{3.2, 2.4, 0.2};
   const Pose2 truth = before.inverse() * after;
-  const auto match = matchFrames(frameAt(before, needed), frameAt(after, needed), truth, {}, {});
+  const auto match = matchFrames(frameAt(before, needed), frameAt(after, needed), {truth, {}}, {});
   ASSERT_TRUE(match);
   EXPECT_LT(lengthAt(*match, truth, needed), 0.5 * lengthAt(*match, truth, {}));
   EXPECT_LT(lengthAt(*match, truth, needed), 1);
 }
 
 TEST(FrameMatch, LooksAtOtherWallsDoNotMatch) {
-  const auto match = matchFrames(frameAt({2, 2, 0.7}), frameAt({2, 2, -2.4}), {0, 0, -3.1}, {}, {});
+  const auto match = matchFrames(frameAt({2, 2, 0.7}), frameAt({2, 2, -2.4}), {{0, 0, -3.1}, {}}, {});
   EXPECT_FALSE(match);
-  EXPECT_FALSE(matchFrames(frameAt({2, 2, 0.7}), makeKeyFrame({}, {}, {}, {}), {}, {}, {}));
+  EXPECT_FALSE(matchFrames(frameAt({2, 2, 0.7}), makeKeyFrame({}, {}, {}, {}), {}, {}));
 }
 
 // Along a bare corridor nothing is said, and the quadratic must not claim it.
@@ -71,7 +71,7 @@ TEST(FrameMatch, ABareCorridorLeavesItsAxisOpen) {
   const auto frame = [&](const Pose2& pose) {
     return makeKeyFrame(test::scanOf(corridor, pose), pose, pose, {});
   };
-  const auto match = matchFrames(frame({0, 0, 0}), frame({0.4, 0.1, 0.05}), {0.5, 0.1, 0.05}, {}, {});
+  const auto match = matchFrames(frame({0, 0, 0}), frame({0.4, 0.1, 0.05}), {{0.5, 0.1, 0.05}, {}}, {});
   ASSERT_TRUE(match);
   EXPECT_NEAR(match->earlier_from_later.y_m, 0.1, 0.005);
   const Pose2 farther{match->earlier_from_later.x_m + 0.3, match->earlier_from_later.y_m,

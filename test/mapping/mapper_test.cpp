@@ -113,7 +113,7 @@ TEST(Mapper, EmptyScansAreNotInsertedButThePoseGoesOn) {
   EXPECT_FALSE(update.inserted);
   EXPECT_FALSE(update.fitted);
   EXPECT_NEAR(mapper.pose().map_from_base.x_m, 1, 1e-9);
-  EXPECT_NEAR(std::sqrt(update.covariance(0, 0)), 0.0117, 0.001);  // 1 % of scale and 6 mm of noise
+  EXPECT_NEAR(std::sqrt(update.covariance(0, 0)), 0.0078, 0.001);  // 0.5 % of scale and 6 mm of noise
 }
 
 TEST(Mapper, ResetBeginsANewEpochAndLoadGoesOnInASavedMap) {

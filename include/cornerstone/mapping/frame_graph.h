@@ -7,7 +7,8 @@
 // errors, so each counts by `match_weight`; a false one is held off by a Cauchy loss.
 #pragma once
 
-#include <array>
+#include <ceres/problem.h>
+
 #include <vector>
 
 #include "cornerstone/base/params.h"
@@ -24,10 +25,11 @@ struct FrameGraphParams {
   double match_turn_rad = 70 * M_PI / 180;  // of a camera with 90 degrees of view
   int match_tries = 24;                     // earlier frames, spread over those nearby
   double match_weight = 0.1;                // a frame meets some ten others with the same errors
-  double loss_sigmas = 2;                   // of a match as a whole
-  int solve_after_frames = 10;              // 2 m of way
-  int redraw_looks_per_scan = 4;            // looks that are drawn anew with each scan: some 4 ms
-  double redraw_shift_m = 0.01;             // a map that is off by less is left as it is: a fifth of a cell
+  double place_weight = 0.3;      // of the same when the newest frame alone is placed: its own error, once
+  double loss_sigmas = 2;         // of a match as a whole
+  int solve_after_frames = 10;    // 2 m of way
+  int redraw_looks_per_scan = 4;  // looks that are drawn anew with each scan: some 4 ms
+  double redraw_shift_m = 0.01;   // a map that is off by less is left as it is: a fifth of a cell
   WallPieceParams piece;
   FrameMatchParams match;
 };
@@ -45,8 +47,9 @@ class FrameGraph {
   FrameGraph(const FrameGraphParams& params, const OdometryNoise& odometry);
   // Whether the robot has gone on far enough since the last frame.
   bool frameDue(const Pose2& odom_from_base) const;
-  // A new frame, held against earlier ones nearby.
-  void addFrame(const RangeScan& scan, const Pose2& odom_from_base, const Pose2& map_from_base);
+  // A new frame, held against earlier ones nearby; returns its pose as these, where they stand, and the prior
+  // have it: the prior where nothing matches.
+  PoseEstimate addFrame(const RangeScan& scan, const Pose2& odom_from_base, const PoseEstimate& prior);
   // A look from nearly the same place as the last frame. The newest ten are kept while the robot stays: what
   // they say of things that came or went must not be lost when the map is drawn anew.
   void addLook(const RangeScan& scan, const Pose2& odom_from_base);
@@ -64,6 +67,14 @@ class FrameGraph {
     std::size_t earlier = 0, later = 0;
     FrameMatch match;
   };
+  struct MatchBlocks {
+    double* earlier;
+    double* later;
+    double* calibration;
+  };
+  void addMatch(ceres::Problem& problem, const FrameMatch& match, double weight,
+                const MatchBlocks& blocks) const;
+  PoseEstimate placeNewest(const PoseEstimate& prior, std::size_t first_match) const;
   std::vector<std::size_t> framesNearby(const Pose2& map_from_base) const;
 
   FrameGraphParams params_;

@@ -37,8 +37,13 @@ struct FrameMatch {
   int pieces = 0;
 };
 
-// expected: earlier_from_later, within the gate of the truth.
-std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& later, const Pose2& expected,
-                                      const ScanCalibration& calibration, const FrameMatchParams& params);
+// Where the search begins.
+struct FrameMatchStart {
+  Pose2 earlier_from_later;  // within the gate of the truth
+  ScanCalibration calibration;
+};
+
+std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& later,
+                                      const FrameMatchStart& start, const FrameMatchParams& params);
 
 }  // namespace cornerstone

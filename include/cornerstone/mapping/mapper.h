@@ -58,7 +58,8 @@ class Mapper {
 
  private:
   void predict(const Pose2& odom_from_base);
-  void remember(const RangeScan& scan, const Pose2& odom_from_base);
+  void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
+  void straighten();                                                  // the map, by what the graph knows
   void redraw();
   bool movesTheMap(const GraphSolution& solution) const;
   LookMotion motion() const;  // since the last look that was inserted

@@ -15,7 +15,7 @@ namespace cornerstone {
 
 struct OdometryNoise {
   // What is not known about the systematic drift at the start (standard deviations).
-  double scale_ratio = 0.01;           // a wheel's diameter is known to that
+  double scale_ratio = 0.005;          // wheels that were measured; more for tracks and worn tyres
   double yaw_drift_rad_per_m = 0.015;  // nearly a degree a metre
   double turn_scale_ratio = 0.02;
   // How fast the rates themselves change with load and floor, relative to the above, per root of a metre.
