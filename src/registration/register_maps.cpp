@@ -97,9 +97,10 @@ std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence
 
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
 std::optional<RefinedPose> refine(const PreparedMap& reference, const PreparedMap& current,
-                                  const Pose2& guess, const RefinementOptions& options) {
+                                  const Pose2& guess, RefinementOptions options) {
   const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m / 3);
   const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m / 3);
+  options.cell_m = std::max(reference.evidence.cell_m, current.evidence.cell_m);
   RefinementOptions everywhere = options;
   everywhere.focus_in_current_m.reset();
   const auto whole = refineOnEdges(reference_index, current_index, guess, everywhere);
@@ -133,7 +134,8 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
   EvidenceGrid coarse(inLargerSquares(counts, params.coarse_cell_m), thinEdges(edges, params.coarse_cell_m),
                       params.coarse_reach_m);
   EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
-  return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
+  return {std::move(coarse),  std::move(fine), std::move(edges),
+          std::move(samples), middle,          view.map.geometry.resolution_m};
 }
 
 RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap& current,
