@@ -95,6 +95,21 @@ std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence
   return judged;
 }
 
+// The lead of the first pose where edges must meet closely: where maps do not bend, that parts a right pose
+// from one whose walls are only near.
+double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const RegistrationParams& params) {
+  const auto closer = [&](const MapEvidence& map) {
+    MapEvidence close = map;
+    close.fine = EvidenceGrid(map.fine.counts(), map.edges, params.close_reach_m);
+    return close;
+  };
+  const MapEvidence there = closer(maps.reference), here = closer(maps.current);
+  settlePoses({there, here}, poses, params);
+  std::vector<PoseScore> scores;
+  for (const Hypothesis& h : poses) scores.push_back(h.score);
+  return leadOf(scores, params.fine_cell_m);
+}
+
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
 std::optional<RefinedPose> refine(const PreparedMap& reference, const PreparedMap& current,
                                   const Pose2& guess, RefinementOptions options) {
@@ -158,6 +173,8 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
   evidence.smaller_map_m =
       static_cast<double>(std::min(there.edges.size(), here.edges.size())) * params.fine_cell_m;
   evidence.with_prior = hints.prior.has_value();
+  if (probabilityRight(evidence) < params.min_probability)
+    evidence.lead_sigmas = std::max(evidence.lead_sigmas, closeLead({there, here}, best, params));
   if (const auto reason = reasonToRefuse(evidence, params)) return {{}, *reason};
 
   Registration registration;
@@ -188,6 +205,7 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("coarse_reach_m", params.coarse_reach_m);
   visitor.field("fine_cell_m", params.fine_cell_m);
   visitor.field("fine_reach_m", params.fine_reach_m);
+  visitor.field("close_reach_m", params.close_reach_m);
   visitor.field("contradiction", params.contradiction);
   visitor.field("coarse_contradiction", params.coarse_contradiction);
   visitor.field("different_m", params.different_m);
