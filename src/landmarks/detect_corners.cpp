@@ -6,10 +6,7 @@
 #include "cornerstone/landmarks/corner_fit.h"
 
 namespace cornerstone {
-namespace {
 
-// A corner suppresses those with a higher rms near it (paper, section 4.1); the two kinds are different
-// landmarks.
 std::vector<CornerLandmark> suppressNear(std::vector<CornerLandmark> corners, double radius_m) {
   std::stable_sort(corners.begin(), corners.end(),
                    [](const CornerLandmark& a, const CornerLandmark& b) { return a.rms_m < b.rms_m; });
@@ -23,8 +20,6 @@ std::vector<CornerLandmark> suppressNear(std::vector<CornerLandmark> corners, do
   }
   return kept;
 }
-
-}  // namespace
 
 void describe(ParamVisitor& visitor, LandmarkParams& params) {
   visitor.group("edges", [&] { describe(visitor, params.edges); });
