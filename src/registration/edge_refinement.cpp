@@ -95,16 +95,6 @@ Pose2 poseAt(const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m) {
   return {shift.x(), shift.y(), turn.yaw_rad};
 }
 
-// From the pivot to the current map's origin.
-Eigen::Matrix3d covarianceAtOrigin(const Eigen::Matrix3d& at_pivot, double yaw,
-                                   const Eigen::Vector2d& pivot_m) {
-  const Eigen::Vector2d lever = Pose2{0, 0, yaw} * Eigen::Vector2d(-pivot_m);
-  Eigen::Matrix3d by_pivot = Eigen::Matrix3d::Identity();
-  by_pivot(0, 2) = -lever.y();
-  by_pivot(1, 2) = lever.x();
-  return by_pivot * at_pivot * by_pivot.transpose();
-}
-
 }  // namespace
 
 std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeIndex& current,
@@ -138,7 +128,9 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
   RefinedPose refined;
   refined.reference_from_current = poseAt(x, pivot_m);
   const FitQuality quality = judgeFit({pairs, x, scale_m, options.cell_m});
-  refined.covariance = covarianceAtOrigin(quality.covariance, x[2], pivot_m);
+  // From the pivot to the current map's origin.
+  refined.covariance = composeCovariance({x[0], x[1], x[2]}, quality.covariance,
+                                         {-pivot_m.x(), -pivot_m.y(), 0}, Eigen::Matrix3d::Zero());
   refined.rms_m = quality.rms_m;
   refined.spread = quality.spread;
   refined.partners = static_cast<int>(pairs.size());

@@ -3,7 +3,8 @@
 namespace cornerstone {
 
 MapRegistrar::MapRegistrar(const LandmarkParams& landmarks, const RegistrationParams& registration)
-    : params_(registration),
+    : landmark_params_(landmarks),
+      params_(registration),
       reference_{LandmarkFollower(landmarks), {}},
       current_{LandmarkFollower(landmarks), {}} {}
 
@@ -14,6 +15,8 @@ void MapRegistrar::Side::update(const GridMap& map, double time_s, const Registr
 }
 
 RegistrationAttempt MapRegistrar::attempt(const RegistrationTask& task) {
+  if (task.reference_anew) reference_ = {LandmarkFollower(landmark_params_), {}};
+  if (task.current_anew) current_ = {LandmarkFollower(landmark_params_), {}};
   RegistrationAttempt attempt;
   if (task.reference) {
     reference_.update(*task.reference, task.time_s, params_);

@@ -53,6 +53,16 @@ TEST(MapRegistrar, WithoutAReferenceItOnlyFindsLandmarks) {
   EXPECT_NE(attempt.landmarks.corners.front().id, 0u);
 }
 
+TEST(MapRegistrar, AMapThatBeganAnewHasNewCorners) {
+  MapRegistrar registrar({}, {});
+  registrar.attempt({std::nullopt, reference(), {}, 0});
+  const RegistrationAttempt followed = registrar.attempt({std::nullopt, reference(), {}, 5});
+  EXPECT_EQ(followed.landmarks.corners.front().since_s, 0);
+  RegistrationTask anew{std::nullopt, reference(), {}, 7};
+  anew.current_anew = true;
+  EXPECT_EQ(registrar.attempt(anew).landmarks.corners.front().since_s, 7);
+}
+
 TEST(MapRegistrar, EmptyMapsAreRefused) {
   MapRegistrar registrar({}, {});
   EXPECT_EQ(registrar.attempt({GridMap{}, reference(), {}, 0}).outcome.refusal,

@@ -18,6 +18,8 @@ struct RegistrationTask {
   GridMap current;
   RegistrationHints hints;
   double time_s = 0;
+  bool reference_anew = false;  // the map began anew: nothing known of the old one holds
+  bool current_anew = false;
 };
 
 struct RegistrationAttempt {
@@ -44,6 +46,7 @@ class MapRegistrar {
     PreparedMap prepared() const { return {follower.landmarks(), *evidence}; }
   };
 
+  LandmarkParams landmark_params_;
   RegistrationParams params_;
   Side reference_;
   Side current_;
