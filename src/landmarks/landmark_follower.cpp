@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "cornerstone/landmarks/crop.h"
+
 namespace cornerstone {
 namespace {
 
@@ -55,17 +57,6 @@ cv::Rect grown(const cv::Rect& cells, int by, const GridGeometry& within) {
   return cv::Rect(cells.x - by, cells.y - by, cells.width + 2 * by, cells.height + 2 * by) & all;
 }
 
-GridMap cropped(const GridMap& map, const cv::Rect& cells) {
-  GridMap crop;
-  crop.geometry = map.geometry;
-  crop.geometry.origin_x_m += cells.x * map.geometry.resolution_m;
-  crop.geometry.origin_y_m += cells.y * map.geometry.resolution_m;
-  crop.geometry.cols = cells.width;
-  crop.geometry.rows = cells.height;
-  crop.occupied = map.occupied(cells);
-  return crop;
-}
-
 // Takes what lies in a region from `fresh` and everything else from `kept`.
 template <typename Item, typename PlaceOf>
 std::vector<Item> patched(const std::vector<Item>& kept, const std::vector<Item>& fresh,
@@ -99,7 +90,7 @@ void LandmarkFollower::searchAround(const GridMap& map, const cv::Rect& changed)
   cv::Rect searched = grown(corners, cells(params_.arm_length_m + params_.suppression_m), map.geometry);
   // Candidates are looked for in squares and on every other cell: those of the whole map.
   const int step = 2 * std::max(cells(params_.candidate_spacing_m), 1);
-  searched = cv::Rect(cv::Point(searched.x / step * step, searched.y / step * step), searched.br());
+  searched = aligned(searched, step);
   const Landmarks fresh = detectLandmarks(cropped(map, searched), params_);
   fresh.states(edges - searched.tl()).copyTo(landmarks_.states(edges));
   landmarks_.edges = patched(landmarks_.edges, fresh.edges, [&](const EdgePoint& e) {

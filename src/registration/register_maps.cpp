@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
+#include "cornerstone/landmarks/crop.h"
 #include "cornerstone/registration/corner_matching.h"
 #include "cornerstone/registration/decision.h"
 #include "cornerstone/registration/edge_refinement.h"
@@ -145,7 +147,10 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
   Eigen::Vector2d middle(0, 0);
   for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
   std::vector<EdgeSample> samples = samplesOf(edges);
-  SquareCounts counts = countSquares(view.map.geometry, view.landmarks.states, params.fine_cell_m);
+  const cv::Mat1b& states = view.landmarks.states;
+  const cv::Rect known = states.empty() ? cv::Rect() : cv::boundingRect(states);
+  SquareCounts counts =
+      countSquares(croppedGeometry(view.map.geometry, known), states(known), params.fine_cell_m);
   EvidenceGrid coarse(inLargerSquares(counts, params.coarse_cell_m), thinEdges(edges, params.coarse_cell_m),
                       params.coarse_reach_m);
   EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
