@@ -30,6 +30,9 @@ using ThreeImages = message_filters::sync_policies::ApproximateTime<sensor_msgs:
 
 constexpr std::array<const char*, 3> kCameras{"reference", "right", "top"};
 
+// A set waits this long for calibrations: connections come one by one, and drivers repeat camera_info with
+// every image.
+constexpr double kCalibrationWait_s = 2;
 constexpr int kStartImages = 30;  // reference images without a set before one counts as missing: 3 s at 10 Hz
 
 // One camera: its images, the newest calibration and, for raw images, the rectification made from it.
@@ -41,6 +44,11 @@ struct Camera {
   std::optional<CameraCalibration> calibration;
   std::optional<Rectifier> rectifier;
   cv::Mat1b rectified;  // kept, so that nothing is allocated image by image
+};
+
+struct ImageSet {
+  std::array<ImageConstPtr, 3> images;  // by kCameras; the last is null with two cameras
+  ros::WallTime taken;
 };
 
 }  // namespace
@@ -64,12 +72,15 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     sigma_publisher_ = node.advertise<sensor_msgs::Image>("disparity_sigma", 1);
     rejections_publisher_ = node.advertise<sensor_msgs::Image>("rejections", 1);
     subscribe(node);
+    held_timer_ = node.createWallTimer(ros::WallDuration(kCalibrationWait_s / 4),
+                                       [this](const ros::WallTimerEvent&) { dropOldHeld(); });
   }
+
+  std::size_t cameraCount() const { return params_.third_camera ? 3 : 2; }
 
   void subscribe(ros::NodeHandle& node) {
     transport_.emplace(node);
-    const std::size_t count = params_.third_camera ? 3 : 2;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < cameraCount(); ++i) {
       Camera& camera = cameras_[i];
       camera.name = node.resolveName(kCameras[i]);
       camera.info_subscriber = node.subscribe<sensor_msgs::CameraInfo>(
@@ -101,6 +112,38 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     camera.calibration = toCalibration(info, camera.name + "/camera_info");
     camera.rectifier.reset();
     rig_.reset();
+    if (uncalibrated().empty()) matchHeld();
+  }
+
+  // What is said of the first camera without a calibration; empty: all have one.
+  std::string uncalibrated() const {
+    for (std::size_t i = 0; i < cameraCount(); ++i)
+      if (!cameras_[i].calibration) return cameras_[i].name + "/camera_info: none received yet";
+    return {};
+  }
+
+  void matchHeld() {
+    std::deque<ImageSet> sets;
+    sets.swap(held_);
+    for (const ImageSet& set : sets) match(set);
+  }
+
+  void dropOldestHeld() {
+    held_.pop_front();
+    diagnostics_->complain(uncalibrated());
+    diagnostics_->dropped(uncalibrated());
+  }
+
+  // The calibrations may never come.
+  void dropOldHeld() {
+    const ros::WallTime now = ros::WallTime::now();
+    while (!held_.empty() && (now - held_.front().taken).toSec() > kCalibrationWait_s) dropOldestHeld();
+  }
+
+  // The newest sets wait for the cameras' first calibrations.
+  void hold(const ImageSet& set) {
+    held_.push_back(set);
+    if (held_.size() > static_cast<std::size_t>(params_.queue_size)) dropOldestHeld();
   }
 
   // Remembers each reference image until its set is complete, so that incomplete sets are counted.
@@ -116,14 +159,11 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     diagnostics_->dropped("a set of images is incomplete: a camera is silent or its stamps differ");
   }
 
-  // The rig of the calibrations seen last; InputError while one is missing or they do not fit together.
+  // The rig of the calibrations seen last; InputError when they do not fit together.
   const TrinocularRig& rig() {
     if (rig_) return *rig_;
-    const std::size_t count = params_.third_camera ? 3 : 2;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!cameras_[i].calibration) throw InputError(cameras_[i].name + "/camera_info: none received yet");
-      if (params_.images == "image_raw") cameras_[i].rectifier.emplace(*cameras_[i].calibration);
-    }
+    if (params_.images == "image_raw")
+      for (std::size_t i = 0; i < cameraCount(); ++i) cameras_[i].rectifier.emplace(*cameras_[i].calibration);
     rig_ = makeRig(*cameras_[0].calibration, *cameras_[1].calibration, cameras_[2].calibration);
     return *rig_;
   }
@@ -140,12 +180,17 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     any_set_ = true;
     while (!awaited_.empty() && awaited_.front() < reference->header.stamp) dropAwaited();
     if (!awaited_.empty() && awaited_.front() == reference->header.stamp) awaited_.pop_front();
+    const ImageSet set{{reference, right, top}, ros::WallTime::now()};
+    uncalibrated().empty() ? match(set) : hold(set);
+  }
+
+  void match(const ImageSet& set) {
     try {
       const ros::WallTime start = ros::WallTime::now();
       const TrinocularRig& known_rig = rig();
-      const StereoImages images{imageOf(cameras_[0], reference), imageOf(cameras_[1], right),
-                                imageOf(cameras_[2], top)};
-      publish(matcher_->match(images, known_rig), reference->header);
+      const StereoImages images{imageOf(cameras_[0], set.images[0]), imageOf(cameras_[1], set.images[1]),
+                                imageOf(cameras_[2], set.images[2])};
+      publish(matcher_->match(images, known_rig), set.images[0]->header);
       diagnostics_->complain("");
       diagnostics_->processed((ros::WallTime::now() - start).toSec());
     } catch (const InputError& error) {
@@ -170,7 +215,9 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   std::array<Camera, 3> cameras_;
   std::optional<TrinocularRig> rig_;
   bool any_set_ = false;
-  int before_first_set_ = 0;       // reference images
+  int before_first_set_ = 0;   // reference images
+  std::deque<ImageSet> held_;  // complete sets that came before the calibrations, oldest first
+  ros::WallTimer held_timer_;
   std::deque<ros::Time> awaited_;  // stamps of reference images whose set is not complete yet
   std::optional<message_filters::Synchronizer<TwoImages>> two_;
   std::optional<message_filters::Synchronizer<ThreeImages>> three_;

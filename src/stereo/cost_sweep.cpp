@@ -1,18 +1,21 @@
 #include "cornerstone/stereo/cost_sweep.h"
 
 #include <algorithm>
-#include <opencv2/core/hal/intrin.hpp>
-
-#include "cornerstone/stereo/pair_cost.h"
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
 
 namespace cornerstone {
 namespace {
 
-constexpr int kLanes = 8;
-constexpr int kCoarseSteps = 2;  // fine windows beside the middle one that the widest sum reaches
-// Rows of a band are chosen so that what the sweep touches stays in the second-level cache.
-constexpr int kBandPixels = 64 * 1024;
-constexpr int kSmallestBand_rows = 32;
+constexpr int kSlack = 64;  // kernels read and write whole vectors
+
+constexpr double kSearchScale = static_cast<double>(kSearchChance) / kChanceCost;  // of the mean pair cost
+// Penalties in the costs of the search, see kSearchChance. A slope of one disparity a pixel is rare on
+// walls, a depth step costs as much as one pixel without any match.
+constexpr int kSlopePenalty = 40, kJumpPenalty = 66;
+// Brightness step at which the penalty of a depth step is halved, far above noise.
+constexpr double kHalvingStep_grey = 20;
 
 // The row or column that a border one mirrors: -1 -> 0, count -> count - 1.
 int mirrored(int at, int count) {
@@ -20,210 +23,182 @@ int mirrored(int at, int count) {
   return at;
 }
 
-template <typename T>
-void mirrorEnds(T* row, int border, int width) {  // row[border] is the image's first column
-  T *left = row + border, *right = left + width;  // the image's columns are left[0] .. right[-1]
-  const int plain = std::min(border, width);
-  for (int i = 0; i < plain; ++i) left[-1 - i] = left[i];
-  for (int i = 0; i < plain; ++i) right[i] = right[-1 - i];
-  for (int i = plain; i < border; ++i) {  // images narrower than the border: mirrored more than once
-    left[-1 - i] = left[mirrored(-1 - i, width)];
-    right[i] = left[mirrored(width + i, width)];
-  }
-}
-
-// Buffers are wide enough for whole vectors at the right end.
-int roundUp(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
-
-// sums[x] = costs[x] + .. + costs[x + window - 1]: at most 7 * 16, so bytes do.
-void sumAlongRow(const std::uint8_t* costs, int window, std::uint8_t* sums, int width) {
-  for (int x = 0; x < width; x += 2 * kLanes) {
-    cv::v_uint8x16 sum = cv::v_load(costs + x);
-    for (int i = 1; i < window; ++i) sum = cv::v_add_wrap(sum, cv::v_load(costs + x + i));
-    cv::v_store(sums + x, sum);
-  }
-}
-
-void addRow(const std::uint8_t* entering, std::uint16_t* sums, int width) {
-  for (int x = 0; x < width; x += kLanes)
-    cv::v_store(sums + x, cv::v_add_wrap(cv::v_load(sums + x), cv::v_load_expand(entering + x)));
-}
-
-// next = sums + entering - leaving
-void slideRow(const std::uint16_t* sums, const std::uint8_t* entering, const std::uint8_t* leaving,
-              std::uint16_t* next, int width) {
-  for (int x = 0; x < width; x += kLanes) {
-    const cv::v_uint16x8 more = cv::v_add_wrap(cv::v_load(sums + x), cv::v_load_expand(entering + x));
-    cv::v_store(next + x, cv::v_sub_wrap(more, cv::v_load_expand(leaving + x)));
-  }
-}
-
 }  // namespace
 
-SecondaryView::SecondaryView(const cv::Mat1b& census, const cv::Point2d& shift)
-    : census_(&census),
-      shift_fixed_(cv::Point2d(shift.x * (1 << kFractionBits), shift.y * (1 << kFractionBits))) {}
-
-void CostSweep::prepare(const SweepInput& input) {
-  input_ = input;
-  size_px_ = input.reference_census->size();
-  radius_px_ = input.window_px / 2;
-  const int width = roundUp(size_px_.width), rows = size_px_.height;
-  const int bordered = width + 2 * kCoarseSteps * input.window_px + 2 * kLanes;
-  pair_costs_.create(1, bordered);
-  row_sums_.create(rows, bordered);
-  fine_sums_.create(rows, bordered);
-  inner_.create(1, bordered);
-  outer_.create(1, bordered);
-  for (cv::Mat1s& costs : costs_) costs.create(rows, width);
-  for (cv::Mat1s* plane : {&winners_.disparity_px, &winners_.cost, &winners_.cost_before,
-                           &winners_.cost_after, &winners_.second_cost})
-    plane->create(rows, width);
+int CostSweep::disparitiesFor(int max_disparity_px) {
+  const int lanes = sweepKernels().lanes;
+  return (max_disparity_px + lanes - 1) / lanes * lanes;
 }
 
-const Winners& CostSweep::run(const SweepInput& input) {
+void CostSweep::prepare(SweepInput& input) {
+  input_ = &input;
+  kernels_ = &sweepKernels();
+  size_px_ = input.reference->size();
+  disparities_ = disparitiesFor(input.max_disparity_px);
+  rows_known_ = 0;
+  const int width = size_px_.width, window = input.window_px, radius = window / 2;
+  const int row_costs = width * disparities_ + kSlack, path_costs = width * (disparities_ + 2) + kSlack;
+  entering_.resize(static_cast<std::size_t>(width + window));
+  leaving_.resize(static_cast<std::size_t>(width + window));
+  for (int x = -window; x < width; ++x) {  // before the first column: those of its window
+    entering_[static_cast<std::size_t>(x + window)] = mirrored(x < 0 ? x + radius + 1 : x + radius, width);
+    leaving_[static_cast<std::size_t>(x + window)] = mirrored(x - 1 - radius, width);
+  }
+  pair_costs_.create(window + 1, row_costs);
+  zeros_.create(1, row_costs);
+  zeros_.setTo(0);
+  column_sums_.create(1, row_costs);
+  sums_.create(1, row_costs);
+  costs_.create(1, row_costs);
+  for (cv::Mat1b* paths : {&from_left_, &from_right_, &from_above_}) paths->create(1, path_costs);
+  // Nothing above the first row: all zero, between 255s.
+  from_above_.setTo(0);
+  for (int x = 0; x < width; ++x)
+    from_above_(0, x * (disparities_ + 2)) = from_above_(0, (x + 1) * (disparities_ + 2) - 1) = 255;
+  lowest_above_.create(1, width);
+  lowest_above_.setTo(0);
+  path_sums_.create(1, disparities_ + kSlack);
+  for (std::size_t step = 0; step < jump_penalty_.size(); ++step)
+    jump_penalty_[step] = static_cast<std::uint8_t>(
+        std::max<double>(kSlopePenalty, kJumpPenalty / (1 + static_cast<double>(step) / kHalvingStep_grey)));
+  jump_ahead_.resize(static_cast<std::size_t>(width));
+  jump_down_.resize(static_cast<std::size_t>(width));
+  path_winners_.resize(static_cast<std::size_t>(width));
+  for (cv::Mat1s* plane :
+       {&winners_.disparity_px, &winners_.cost, &winners_.cost_before, &winners_.cost_after})
+    plane->create(size_px_);
+  winners_.chance_cost.create(size_px_);
+  winners_.own_cost.create(size_px_);
+  winners_.margin.create(size_px_);
+  winners_.lead.create(size_px_);
+}
+
+const Winners& CostSweep::run(SweepInput& input) {
   prepare(input);
-  winners_.cost.setTo(Winners::kNoCost);
-  winners_.second_cost.setTo(Winners::kNoCost);
-  winners_.cost_before.setTo(Winners::kNoCost);
-  winners_.cost_after.setTo(Winners::kNoCost);
-  winners_.disparity_px.setTo(0);
-  for (int row = 0; row < size_px_.height;) {
-    const Band band = bandFrom(row);
-    sweepBand(band);
-    row = band.end_row;
+  endCosts();
+  const int width = size_px_.width;
+  PathRow paths;
+  paths.costs = costs_[0];
+  paths.jump_ahead = jump_ahead_.data();
+  paths.jump_down = jump_down_.data();
+  paths.width = width;
+  paths.disparities = disparities_;
+  paths.slope_penalty = kSlopePenalty;
+  paths.from_left = from_left_[0];
+  paths.from_right = from_right_[0];
+  paths.from_above = from_above_[0];
+  paths.lowest_above = lowest_above_[0];
+  paths.sums = path_sums_[0];
+  paths.winners = path_winners_.data();
+  WindowRow window;
+  window.column_sums = column_sums_[0];
+  window.window_px = input.window_px;
+  window.entering = entering_.data() + window.window_px;
+  window.leaving = leaving_.data() + window.window_px;
+  window.width = width;
+  window.disparities = disparities_;
+  window.scale = static_cast<unsigned>(kSearchScale * 65536 / (input.window_px * input.window_px));
+  for (int row = 0; row < size_px_.height; ++row) {
+    windowSums(row);
+    kernels_->windowCosts(window, sums_[0], costs_[0]);
+    jumpPenalties(row);
+    kernels_->pathsAlong(paths);
+    kernels_->pathDown(paths);
+    keep(row);
   }
   return winners_;
 }
 
-CostSweep::Band CostSweep::bandFrom(int first_row) const {
-  const int rows = size_px_.height;
-  const int band_rows = std::max(kSmallestBand_rows, kBandPixels / size_px_.width);
-  Band band;
-  band.first_row = first_row;
-  // A remainder smaller than half a band joins this one: its border rows would cost more than it.
-  band.end_row = rows - first_row < band_rows * 3 / 2 ? rows : first_row + band_rows;
-  band.first_sum = std::max(0, band.first_row - kCoarseSteps * input_.window_px);
-  band.end_sum = std::min(rows, band.end_row + kCoarseSteps * input_.window_px);
-  band.first_pair = std::max(0, band.first_sum - radius_px_);
-  band.end_pair = std::min(rows, band.end_sum + radius_px_);
-  return band;
-}
-
-void CostSweep::sweepBand(const Band& band) {
-  const int last = input_.max_disparity_px + 1;
-  for (int plane : {1, 2})  // before disparity 0: nothing
-    costs_[static_cast<std::size_t>(plane)].rowRange(band.first_row, band.end_row).setTo(Winners::kNoCost);
-  for (int disparity_px = 0; disparity_px <= last; ++disparity_px) {
-    pairCosts(band, disparity_px);
-    fineSums(band);
-    windowCosts(band, disparity_px);
-    keepBest(band, disparity_px - 1);
-    std::swap(costs_[1], costs_[2]);
-    std::swap(costs_[0], costs_[1]);
+// Pair costs at one disparity of all pixels; where no camera sees them, they stay what they were.
+void CostSweep::planeCosts(int disparity_px) {
+  constexpr std::uint8_t kUnseen = 255;
+  for (std::size_t v = 0; v < 2; ++v) {
+    const SecondaryView& view = input_->views[v < input_->view_count ? v : 0];
+    camera_planes_[v].create(size_px_);
+    camera_planes_[v].setTo(kUnseen);
+    input_->reference->costs(view.features(), view.offsetAt(disparity_px), camera_planes_[v]);
   }
-  costs_[0].rowRange(band.first_row, band.end_row).setTo(Winners::kNoCost);
-  keepBest(band, last);
-}
-
-void CostSweep::pairCosts(const Band& band, int disparity_px) {
-  std::uint8_t* costs = pair_costs_[0];
-  for (int row = band.first_pair; row < band.end_pair; ++row) {
-    const SeenRow first = seenRow(input_.views[0], row, disparity_px);
-    const SeenRow second = input_.views.size() > 1 ? seenRow(input_.views[1], row, disparity_px) : SeenRow();
-    pairCostRow((*input_.reference_census)[row], first, second, {0, size_px_.width}, costs + radius_px_);
-    mirrorEnds(costs, radius_px_, size_px_.width);
-    sumAlongRow(costs, input_.window_px, row_sums_[row], size_px_.width);
-  }
-}
-
-void CostSweep::fineSums(const Band& band) {
-  const int rows = size_px_.height, border = kCoarseSteps * input_.window_px;
-  for (int row = band.first_sum; row < band.end_sum; ++row) {
-    std::uint16_t* sums = fine_sums_[row] + border;
-    if (row == band.first_sum) {
-      std::fill(sums, sums + size_px_.width, std::uint16_t{0});
-      for (int i = -radius_px_; i <= radius_px_; ++i)
-        addRow(row_sums_[mirrored(row + i, rows)], sums, size_px_.width);
-    } else {
-      slideRow(fine_sums_[row - 1] + border, row_sums_[mirrored(row + radius_px_, rows)],
-               row_sums_[mirrored(row - 1 - radius_px_, rows)], sums, size_px_.width);
+  for (int row = 0; row < size_px_.height; ++row) {
+    const std::uint8_t *one = camera_planes_[0][row], *other = camera_planes_[1][row];
+    std::uint8_t* out = plane_[row];
+    for (int x = 0; x < size_px_.width; ++x) {
+      const int a = one[x] == kUnseen ? other[x] : one[x], b = other[x] == kUnseen ? a : other[x];
+      out[x] = a == kUnseen ? out[x] : static_cast<std::uint8_t>(a + b);
     }
   }
-  for (int row = band.first_sum; row < band.end_sum; ++row)
-    mirrorEnds(fine_sums_[row], border, size_px_.width);
 }
 
-// Columns of 3 and 5 fine windows: outer = S(-2) + .. + S(2), inner = outer + 2 (S(-1) + S(0) + S(1)).
-void CostSweep::sumColumns(int row) {
-  const int rows = size_px_.height, step = input_.window_px;
-  std::array<const std::uint16_t*, 2 * kCoarseSteps + 1> sums{};
-  for (int i = -kCoarseSteps; i <= kCoarseSteps; ++i)
-    sums[static_cast<std::size_t>(i + kCoarseSteps)] = fine_sums_[mirrored(row + i * step, rows)];
-  std::uint16_t *inner = inner_[0], *outer = outer_[0];
-  const int width = size_px_.width + 2 * kCoarseSteps * step;
-  for (int x = 0; x < width; x += kLanes) {
-    const cv::v_uint16x8 three = cv::v_load(sums[1] + x) + cv::v_load(sums[2] + x) + cv::v_load(sums[3] + x);
-    const cv::v_uint16x8 five = three + cv::v_load(sums[0] + x) + cv::v_load(sums[4] + x);
-    cv::v_store(outer + x, five);
-    cv::v_store(inner + x, five + three + three);
-  }
+// Window costs of the disparities just outside the search: of the farthest, which all cameras see, and of the
+// nearest. Most pixels have neither, so that they also tell what unrelated pixels cost in a place.
+void CostSweep::endCosts() {
+  const cv::Size window(input_->window_px, input_->window_px);
+  plane_.create(size_px_);
+  planeCosts(0);
+  plane_.copyTo(unseen_costs_);
+  cv::boxFilter(plane_, farthest_, CV_16S, window, {-1, -1}, false, cv::BORDER_REFLECT);
+  planeCosts(disparities_ + 1);
+  cv::boxFilter(plane_, nearest_, CV_16S, window, {-1, -1}, false, cv::BORDER_REFLECT);
 }
 
-void CostSweep::windowCosts(const Band& band, int disparity_px) {
-  const int step = input_.window_px;
-  const std::uint16_t *inner = inner_[0], *outer = outer_[0];
-  const cv::v_uint16x8 fine_weight = cv::v_setall_u16(kFineWeight);
-  for (int row = band.first_row; row < band.end_row; ++row) {
-    sumColumns(row);
-    const std::uint16_t* fine = fine_sums_[row] + kCoarseSteps * step;
-    short* costs = costs_[0][row];
-    for (int x = 0; x < size_px_.width; x += kLanes) {
-      const cv::v_uint16x8 coarse = cv::v_load(inner + x + step) + cv::v_load(inner + x + 2 * step) +
-                                    cv::v_load(inner + x + 3 * step) + cv::v_load(outer + x) +
-                                    cv::v_load(outer + x + 4 * step);
-      const cv::v_uint16x8 sum = coarse + cv::v_mul_wrap(cv::v_load(fine + x), fine_weight);
-      cv::v_store(costs + x, cv::v_reinterpret_as_s16(cv::v_shr<1>(sum)));
+std::uint8_t* CostSweep::pairCostsOf(int row) { return pair_costs_[row % pair_costs_.rows]; }
+
+// Moves the sums over the window's rows on to `row`.
+void CostSweep::windowSums(int row) {
+  const int rows = size_px_.height, radius = input_->window_px / 2, count = size_px_.width * disparities_;
+  const auto computeUpTo = [&](int end) {
+    for (; rows_known_ < std::min(end, rows); ++rows_known_) {
+      PairCostRow pair;
+      for (std::size_t c = 0; c < GradientFeatures::kChannels; ++c)
+        pair.reference[c] = input_->reference->channel(c)[rows_known_];
+      for (std::size_t v = 0; v < input_->view_count; ++v)
+        pair.cameras[v] = input_->views[v].linesOf(rows_known_);
+      pair.camera_count = static_cast<int>(input_->view_count);
+      pair.unseen = unseen_costs_[rows_known_];
+      pair.width = size_px_.width;
+      pair.disparities = disparities_;
+      kernels_->pairCosts(pair, pairCostsOf(rows_known_));
     }
-    maskUnseen(costs, row, disparity_px);
+  };
+  computeUpTo(row + radius + 1);
+  if (row > 0) {
+    kernels_->slide(column_sums_[0], pairCostsOf(mirrored(row + radius, rows)),
+                    pairCostsOf(mirrored(row - 1 - radius, rows)), count);
+    return;
+  }
+  column_sums_.setTo(0);
+  for (int i = -radius; i <= radius; ++i)
+    kernels_->slide(column_sums_[0], pairCostsOf(mirrored(i, rows)), zeros_[0], count);
+}
+
+void CostSweep::jumpPenalties(int row) {
+  const std::uint8_t *here = (*input_->reference_image)[row],
+                     *above = (*input_->reference_image)[std::max(row - 1, 0)];
+  for (int x = 0; x < size_px_.width; ++x) {
+    const auto at = static_cast<std::size_t>(x);
+    jump_ahead_[at] = jump_penalty_[static_cast<std::size_t>(std::abs(here[x] - here[std::max(x - 1, 0)]))];
+    jump_down_[at] = jump_penalty_[static_cast<std::size_t>(std::abs(here[x] - above[x]))];
   }
 }
 
-void CostSweep::maskUnseen(short* costs, int row, int disparity_px) const {
-  int begin = size_px_.width, end = 0;  // columns that some camera sees; the cameras' parts always touch
-  for (const SecondaryView& view : input_.views) {
-    const SeenRow seen = seenRow(view, row, disparity_px);
-    if (seen.begin >= seen.end) continue;
-    begin = std::min(begin, seen.begin);
-    end = std::max(end, seen.end);
-  }
-  std::fill(costs, costs + std::min(begin, size_px_.width), Winners::kNoCost);
-  std::fill(costs + std::max(end, 0), costs + size_px_.width, Winners::kNoCost);
-}
-
-// Looks at the costs of `disparity_px` (costs_[1]) between its neighbours (costs_[2] before, costs_[0]
-// after).
-void CostSweep::keepBest(const Band& band, int disparity_px) {
-  const cv::v_int16x8 none = cv::v_setall_s16(Winners::kNoCost);
-  const cv::v_int16x8 candidate = cv::v_setall_s16(static_cast<short>(disparity_px));
-  for (int row = band.first_row; row < band.end_row; ++row) {
-    const short *before = costs_[2][row], *here = costs_[1][row], *after = costs_[0][row];
-    short *best = winners_.cost[row], *second = winners_.second_cost[row],
-          *winner = winners_.disparity_px[row];
-    short *best_before = winners_.cost_before[row], *best_after = winners_.cost_after[row];
-    for (int x = 0; x < size_px_.width; x += kLanes) {
-      const cv::v_int16x8 b = cv::v_load(before + x), h = cv::v_load(here + x), a = cv::v_load(after + x);
-      const cv::v_int16x8 cost = cv::v_select((b > h) & (h <= a), h, none);
-      const cv::v_int16x8 old_second = cv::v_load(second + x);
-      if (!cv::v_check_any(cost < old_second)) continue;  // most disparities are nobody's best
-      const cv::v_int16x8 old_best = cv::v_load(best + x);
-      const cv::v_int16x8 wins = cost < old_best;
-      cv::v_store(second + x, cv::v_min(old_second, cv::v_max(old_best, cost)));
-      cv::v_store(best + x, cv::v_min(old_best, cost));
-      cv::v_store(winner + x, cv::v_select(wins, candidate, cv::v_load(winner + x)));
-      cv::v_store(best_before + x, cv::v_select(wins, b, cv::v_load(best_before + x)));
-      cv::v_store(best_after + x, cv::v_select(wins, a, cv::v_load(best_after + x)));
-    }
+void CostSweep::keep(int row) {
+  const std::uint8_t* own = pairCostsOf(row);
+  const std::uint16_t* sums = sums_[0];
+  const short *seen_by_one = input_->views[0].seenOf(row),
+              *seen_by_other = input_->views[input_->view_count - 1].seenOf(row);
+  short *disparities_px = winners_.disparity_px[row], *costs = winners_.cost[row];
+  short *before = winners_.cost_before[row], *after = winners_.cost_after[row];
+  for (int x = 0; x < size_px_.width; ++x, own += disparities_, sums += disparities_) {
+    const PathWinner& winner = path_winners_[static_cast<std::size_t>(x)];
+    const int i = winner.index;
+    const bool seen = i < std::max(seen_by_one[x], seen_by_other[x]);
+    disparities_px[x] = static_cast<short>(i + 1);
+    costs[x] = seen ? static_cast<short>(sums[i]) : Winners::kNoCost;
+    before[x] = i > 0 ? static_cast<short>(sums[i - 1]) : farthest_(row, x);
+    after[x] = i + 1 < disparities_ ? static_cast<short>(sums[i + 1]) : nearest_(row, x);
+    winners_.chance_cost(row, x) = std::max(farthest_(row, x), nearest_(row, x));
+    winners_.own_cost(row, x) = own[i];
+    winners_.margin(row, x) = winner.margin;
+    winners_.lead(row, x) = winner.lead;
   }
 }
 

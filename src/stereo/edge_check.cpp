@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "cornerstone/stereo/census.h"
 #include "cornerstone/stereo/disparity.h"
 
 namespace cornerstone {
@@ -14,20 +13,18 @@ constexpr int kStep_px = 1;  // neighbours on one surface differ by no more
 
 // Mean over the cameras that see all of the 3 x 3 px; that of chance if none does.
 double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
-  const cv::Mat1b& reference = *input.reference_census;
-  const cv::Rect inner(1, 1, reference.cols - 2, reference.rows - 2);
+  const cv::Rect inner({1, 1}, input.reference->size() - cv::Size(2, 2));
   int sum = 0, cameras = 0;
-  for (const SecondaryView& view : input.views) {
-    const cv::Point seen = at + view.offsetAt(disparity_px);
+  for (std::size_t v = 0; v < input.view_count; ++v) {
+    const cv::Point seen = at + input.views[v].offsetAt(disparity_px);
     if (!inner.contains(at) || !inner.contains(seen)) continue;
     ++cameras;
-    for (int dy = -1; dy <= 1; ++dy) {
-      const std::uint8_t* r = reference[at.y + dy] + at.x;
-      const std::uint8_t* s = view.census()[seen.y + dy] + seen.x;
-      for (int dx = -1; dx <= 1; ++dx) sum += bitCount(static_cast<std::uint8_t>(r[dx] ^ s[dx]));
-    }
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        sum += input.reference->costAt(at + cv::Point(dx, dy), input.views[v].features(),
+                                       seen + cv::Point(dx, dy));
   }
-  return cameras > 0 ? static_cast<double>(sum) / cameras : 9 * kCensusBits / 2.0;
+  return cameras > 0 ? static_cast<double>(sum) / cameras : 9 * kChanceCost / 2.0;
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kMaxDisparity_px = 1024;  // far above any camera's use; keeps costs and disparities in 16 bits
 constexpr int kSmallestWindow_px = 3, kLargestWindow_px = 7;  // larger sums would not fit 16 bits
-constexpr int kWindowsAcross = 80;    // of the image's width; about a degree of a view of 90
-constexpr double kSurfaceUnits = 16;  // of a pixel, for the surface search
+constexpr int kSmallestDerivedWindow_px = 5;                  // with 3, answers are twice as noisy
+constexpr int kWindowsAcross = 80;  // of the image's width; about a degree of a view of 90
 
 // An odd number within the range, or 0: derived from the image's width.
 void requireOddOrNone(int value, const std::pair<int, int>& range, const std::string& name) {
@@ -25,14 +25,15 @@ void requireOddOrNone(int value, const std::pair<int, int>& range, const std::st
 void requireUsable(const StereoParams& params) {
   requireWithin(params.max_disparity_px, 1, kMaxDisparity_px, "max_disparity_px");
   requireOddOrNone(params.window_px, {kSmallestWindow_px, kLargestWindow_px}, "window_px");
-  requireWithin(params.smallest_margin_sigmas, 0, 100, "smallest_margin_sigmas");
-  requireWithin(params.smallest_gain_sigmas, 0, 100, "smallest_gain_sigmas");
+  requireWithin(params.smallest_margin_share, 0, 4, "smallest_margin_share");
   requireWithin(params.smallest_edge_cost_ratio, 0, 100, "smallest_edge_cost_ratio");
   requireWithin(params.largest_own_share, 0, 1, "largest_own_share");
   requireWithin(params.left_right_tolerance_px, 0, kMaxDisparity_px, "left_right_tolerance_px");
   requirePositive(params.largest_sigma_px, "largest_sigma_px");
   requireOddOrNone(params.subpixel_support_px, {1, 31}, "subpixel_support_px");
   requireWithin(params.smallest_surface_share, 0, 1, "smallest_surface_share");
+  requireWithin(params.strong_product, 0, 1000, "strong_product");
+  requireWithin(params.smallest_strong_windows, 0, 1000, "smallest_strong_windows");
   requirePositive(params.surface_step_px, "surface_step_px");
 }
 
@@ -72,11 +73,10 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   requireUsable(images, rig);
   disparity.rig = rig;
   sweep(images, rig);
-  validator_.check(
-      *winners_, sweep_input_,
-      {params_.smallest_margin_sigmas, params_.smallest_gain_sigmas, params_.smallest_edge_cost_ratio,
-       params_.largest_own_share, params_.left_right_tolerance_px},
-      disparity.rejection);
+  validator_.check(*winners_, sweep_input_,
+                   {params_.smallest_margin_share, params_.strong_product, params_.smallest_edge_cost_ratio,
+                    params_.largest_own_share, params_.left_right_tolerance_px},
+                   disparity.rejection);
   refine(disparity);
   dropSmallSurfaces(disparity);
 }
@@ -84,22 +84,25 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
 int StereoMatcher::windowFor(int image_width_px) const {
   if (params_.window_px > 0) return params_.window_px;
   const int odd_px = image_width_px / kWindowsAcross / 2 * 2 + 1;
-  return std::clamp(odd_px, kSmallestWindow_px, kLargestWindow_px);
+  return std::clamp(odd_px, kSmallestDerivedWindow_px, kLargestWindow_px);
 }
 
 int StereoMatcher::supportFor(int image_width_px) const {
-  return params_.subpixel_support_px > 0 ? params_.subpixel_support_px : windowFor(image_width_px) - 2;
+  return params_.subpixel_support_px > 0 ? params_.subpixel_support_px : windowFor(image_width_px);
 }
 
 void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) {
-  census_.apply(images.reference, reference_census_);
-  census_.apply(images.right, right_census_);
-  sweep_input_.reference_census = &reference_census_;
-  sweep_input_.views.clear();
-  sweep_input_.views.emplace_back(right_census_, rig.right_shift);
+  const int disparities = CostSweep::disparitiesFor(params_.max_disparity_px);
+  reference_.compute(images.reference);
+  right_.compute(images.right);
+  sweep_input_.reference_image = &images.reference;
+  sweep_input_.reference = &reference_;
+  sweep_input_.views[0].prepare(right_, rig.right_shift, disparities);
+  sweep_input_.view_count = 1;
   if (!images.top.empty()) {
-    census_.apply(images.top, top_census_);
-    sweep_input_.views.emplace_back(top_census_, *rig.top_shift);
+    top_.compute(images.top);
+    sweep_input_.views[1].prepare(top_, *rig.top_shift, disparities);
+    sweep_input_.view_count = 2;
   }
   sweep_input_.max_disparity_px = params_.max_disparity_px;
   sweep_input_.window_px = windowFor(images.reference.cols);
@@ -107,7 +110,7 @@ void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) 
 }
 
 void StereoMatcher::refine(Disparity& disparity) {
-  refiner_.refine({winners_, &disparity.rejection, sweep_input_.views.size()},
+  refiner_.refine({winners_, &disparity.rejection, sweep_input_.view_count, sweep_input_.window_px},
                   {supportFor(disparity.rejection.cols)}, disparity.disparity_px, disparity.sigma_px);
   const auto largest_sigma = static_cast<float>(params_.largest_sigma_px);
   for (int y = 0; y < disparity.rejection.rows; ++y)
@@ -116,14 +119,21 @@ void StereoMatcher::refine(Disparity& disparity) {
 }
 
 void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
-  disparity.disparity_px.convertTo(surfaces_, CV_16S, kSurfaceUnits);
-  const double smallest_px = params_.smallest_surface_share * static_cast<double>(surfaces_.total());
-  cv::filterSpeckles(surfaces_, 0, static_cast<int>(smallest_px), params_.surface_step_px * kSurfaceUnits,
-                     surface_buffer_);
-  for (int y = 0; y < surfaces_.rows; ++y)
-    for (int x = 0; x < surfaces_.cols; ++x)
-      if (surfaces_(y, x) == 0 && disparity.disparity_px(y, x) > 0)
-        reject(disparity, y, x, Rejection::kSurface);
+  const auto pixels = static_cast<double>(disparity.rejection.total());
+  const int window_area = sweep_input_.window_px * sweep_input_.window_px;
+  const SurfaceParams params{static_cast<int>(params_.smallest_surface_share * pixels),
+                             static_cast<int>(params_.smallest_strong_windows * window_area),
+                             static_cast<float>(params_.surface_step_px)};
+  surfaces_.judge(disparity.disparity_px, validator_.evidence(), params, verdicts_);
+  for (int y = 0; y < verdicts_.rows; ++y) {
+    const std::uint8_t *verdicts = verdicts_[y], *evidence = validator_.evidence()[y];
+    for (int x = 0; x < verdicts_.cols; ++x) {
+      if (verdicts[x] == SurfaceFilter::kGood) continue;
+      const bool flat = evidence[x] == static_cast<std::uint8_t>(Evidence::kFlat);
+      const Rejection weak = flat ? Rejection::kTexture : Rejection::kUniqueness;
+      reject(disparity, y, x, verdicts[x] == SurfaceFilter::kSmall ? Rejection::kSurface : weak);
+    }
+  }
 }
 
 }  // namespace cornerstone

@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kLanes = 4;
 constexpr float kNone_px = -1e4F;
-// What the fit does not know (slant within the windows, rectification, rounding) is added to every sigma.
-constexpr float kModelSigma_px = 0.06F;
+// What the fit does not know is added to every sigma: slant within the windows, rectification, rounding. Half
+// of it is right for rendered images, all of it for photographs from calibrated cameras.
+constexpr float kModelSigma_px = 0.15F;
 constexpr float kLargestStep_px = 1.0F;
 
 struct Fit {
@@ -23,7 +24,7 @@ struct Fit {
 
 Fit fitOf(float before, float middle, float after, const CostNoise& noise) {
   const float step = std::max(std::max(before, after) - middle, 1.F);
-  return {(before - after) / (2 * step), noise.sigmaAt(middle) / (2 * step)};
+  return {std::clamp((before - after) / (2 * step), -0.5F, 0.5F), noise.sigmaAt(middle) / (2 * step)};
 }
 
 }  // namespace
@@ -31,7 +32,7 @@ Fit fitOf(float before, float middle, float after, const CostNoise& noise) {
 void SubpixelRefiner::fitEach(const SubpixelInput& input) {
   const cv::Mat1b& rejection = *input.rejection;
   const Winners& winners = *input.winners;
-  const CostNoise noise(input.cameras);
+  const CostNoise noise(input.window_px, input.cameras);
   const cv::Size padded(rejection.cols + 2 * radius_px_ + kLanes, rejection.rows + 2 * radius_px_);
   for (cv::Mat1f* plane : {&disparity_px_, &averaged_px_}) {
     plane->create(padded);
@@ -42,12 +43,16 @@ void SubpixelRefiner::fitEach(const SubpixelInput& input) {
     plane->setTo(0);
   }
   for (int y = 0; y < rejection.rows; ++y) {
+    const std::uint8_t* rejections = rejection[y];
+    const short *before = winners.cost_before[y], *cost = winners.cost[y], *after = winners.cost_after[y];
+    const short* whole_px = winners.disparity_px[y];
+    float *disparities_px = disparity_px_[y + radius_px_] + radius_px_,
+          *weights = weight_[y + radius_px_] + radius_px_;
     for (int x = 0; x < rejection.cols; ++x) {
-      if (rejection(y, x) != 0) continue;
-      const Fit fit = fitOf(winners.cost_before(y, x), winners.cost(y, x), winners.cost_after(y, x), noise);
-      disparity_px_(y + radius_px_, x + radius_px_) =
-          static_cast<float>(winners.disparity_px(y, x)) + fit.ahead_px;
-      weight_(y + radius_px_, x + radius_px_) = 1 / (fit.sigma_px * fit.sigma_px);
+      const Fit fit = fitOf(before[x], cost[x], after[x], noise);
+      const bool answered = rejections[x] == 0;
+      disparities_px[x] = answered ? static_cast<float>(whole_px[x]) + fit.ahead_px : kNone_px;
+      weights[x] = answered ? 1 / (fit.sigma_px * fit.sigma_px) : 0;
     }
   }
 }

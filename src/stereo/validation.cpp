@@ -1,6 +1,9 @@
 #include "cornerstone/stereo/validation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "cornerstone/stereo/cost_noise.h"
@@ -8,59 +11,59 @@
 namespace cornerstone {
 namespace {
 
+// What chance makes of the best of all disparities on a bare wall, in CostNoise: there is nothing to
+// correlate.
+constexpr float kFlatGain_sigmas = 3;
+// Of a pixel whose match differs by rounding only, of kChanceCost.
+constexpr int kLeastPairCost = 5;
+
 constexpr std::uint8_t codeOf(Rejection rejection) { return static_cast<std::uint8_t>(rejection); }
-
-// What a pixel's own costs say, where so many cameras see it.
-class WinnerTest {
- public:
-  WinnerTest(const ValidationParams& params, const SweepInput& input, std::size_t cameras)
-      : noise_(cameras),
-        margin_sigmas_(static_cast<float>(params.smallest_margin_sigmas)),
-        max_disparity_px_(input.max_disparity_px) {
-    const float chance = chanceCost(input.window_px);
-    largest_cost_ = chance - static_cast<float>(params.smallest_gain_sigmas) * noise_.sigmaAt(chance);
-  }
-  Rejection verdictOn(short cost, short second_cost, short disparity_px) const {
-    if (cost == Winners::kNoCost) return Rejection::kOutside;
-    if (cost > largest_cost_) return Rejection::kTexture;
-    const auto margin = static_cast<float>(second_cost - cost);
-    if (margin < margin_sigmas_ * noise_.sigmaAt(cost)) return Rejection::kUniqueness;
-    if (disparity_px <= 0 || disparity_px > max_disparity_px_) return Rejection::kRange;
-    return Rejection::kNone;
-  }
-
- private:
-  CostNoise noise_;
-  float margin_sigmas_, largest_cost_ = 0;
-  int max_disparity_px_;
-};
 
 }  // namespace
 
 void Validator::check(const Winners& winners, const SweepInput& input, const ValidationParams& params,
                       cv::Mat1b& rejection) {
-  rejection.create(input.reference_census->size());
+  rejection.create(input.reference->size());
   checkWinners(winners, input, params, rejection);
-  for (const SecondaryView& view : input.views)
-    checkSecondary(winners, view, params.left_right_tolerance_px, rejection);
+  for (std::size_t v = 0; v < input.view_count; ++v)
+    checkSecondary(winners, input.views[v], params.left_right_tolerance_px, rejection);
   checkOwnCosts(winners, input, params.largest_own_share, rejection);
   edge_check_.check(winners, input, params.smallest_edge_cost_ratio, rejection);
 }
 
 void Validator::checkWinners(const Winners& winners, const SweepInput& input, const ValidationParams& params,
                              cv::Mat1b& rejection) {
-  const WinnerTest all_cameras(params, input, input.views.size()), one_camera(params, input, 1);
-  const cv::Rect image({0, 0}, rejection.size());
+  const int smallest_margin = static_cast<int>(std::lround(params.smallest_margin_share * kSearchChance));
+  const int last_px = input.max_disparity_px;
+  const CostNoise noise(input.window_px, input.view_count);
+  const float flat_gain = kFlatGain_sigmas * noise.share();
+  // Of chance matches both margin and lead are small: their product tells best what is beyond doubt.
+  const int window_area = input.window_px * input.window_px;
+  const double unit = static_cast<double>(kSearchChance) * kSearchChance / (window_area * kChanceCost);
+  const auto strong_product = static_cast<float>(params.strong_product * unit) * noise.share();
+  const int least_cost = kLeastPairCost * window_area;
+  evidence_.create(rejection.size());
   for (int y = 0; y < rejection.rows; ++y) {
-    const short *costs = winners.cost[y], *seconds = winners.second_cost[y],
-                *disparities = winners.disparity_px[y];
-    std::uint8_t* rejections = rejection[y];
+    const short *costs = winners.cost[y], *before = winners.cost_before[y], *after = winners.cost_after[y];
+    const short* disparities_px = winners.disparity_px[y];
+    const short* chance = winners.chance_cost[y];
+    const std::uint8_t *margins = winners.margin[y], *leads = winners.lead[y];
+    std::uint8_t *rejections = rejection[y], *evidence = evidence_[y];
     for (int x = 0; x < rejection.cols; ++x) {
-      bool all_see = true;
-      for (const SecondaryView& view : input.views)
-        all_see = all_see && image.contains(cv::Point(x, y) + view.offsetAt(disparities[x]));
-      const WinnerTest& test = all_see ? all_cameras : one_camera;
-      rejections[x] = codeOf(test.verdictOn(costs[x], seconds[x], disparities[x]));
+      const int disparity_px = disparities_px[x];
+      const bool outward = (disparity_px <= 1 && before[x] < costs[x]) ||
+                           (disparity_px >= last_px && after[x] < costs[x]) || disparity_px > last_px;
+      Rejection verdict = outward ? Rejection::kRange : Rejection::kNone;
+      const int gain = std::max(chance[x] - costs[x], 0);
+      const bool flat = static_cast<float>(gain) < flat_gain * static_cast<float>(chance[x]);
+      if (margins[x] < smallest_margin) verdict = flat ? Rejection::kTexture : Rejection::kUniqueness;
+      if (costs[x] == Winners::kNoCost) verdict = Rejection::kOutside;
+      rejections[x] = codeOf(verdict);
+      const bool strong = static_cast<float>(margins[x] * leads[x]) >
+                          strong_product * static_cast<float>(costs[x] + least_cost);
+      evidence[x] = static_cast<std::uint8_t>(strong ? Evidence::kStrong
+                                              : flat ? Evidence::kFlat
+                                                     : Evidence::kWeak);
     }
   }
 }
@@ -68,23 +71,23 @@ void Validator::checkWinners(const Winners& winners, const SweepInput& input, co
 void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                                cv::Mat1b& rejection) {
   const int rows = rejection.rows, cols = rejection.cols;
-  claim_cost_.create(rejection.size());
-  claim_disparity_px_.create(rejection.size());
-  claim_cost_.setTo(Winners::kNoCost);
-  short *claim_costs = claim_cost_[0], *claim_disparities_px = claim_disparity_px_[0];
+  claims_.create(rejection.size());
+  claims_.setTo(std::numeric_limits<int>::max());
+  int* claims = claims_[0];
+  offsets_.clear();
+  for (int d = 0; d <= view.disparities(); ++d) offsets_.push_back(view.offsetAt(d));
   // Index of the secondary pixel that sees reference pixel (x, y), or -1.
   const auto seenBy = [&](int x, int y, int disparity_px) {
-    const cv::Point offset = view.offsetAt(disparity_px);
+    const cv::Point offset = offsets_[static_cast<std::size_t>(disparity_px)];
     const int sx = x + offset.x, sy = y + offset.y;
     return sx >= 0 && sx < cols && sy >= 0 && sy < rows ? sy * cols + sx : -1;
   };
+  constexpr int kCostUnit = 1 << 16;  // a claim is its cost, and below it its disparity
   for (int y = 0; y < rows; ++y) {
     const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y];
     for (int x = 0; x < cols; ++x) {
       const int seen = seenBy(x, y, disparities_px[x]);
-      if (seen < 0 || costs[x] >= claim_costs[seen]) continue;
-      claim_costs[seen] = costs[x];
-      claim_disparities_px[seen] = disparities_px[x];
+      if (seen >= 0) claims[seen] = std::min(claims[seen], costs[x] * kCostUnit + disparities_px[x]);
     }
   }
   for (int y = 0; y < rows; ++y) {
@@ -93,7 +96,7 @@ void Validator::checkSecondary(const Winners& winners, const SecondaryView& view
     for (int x = 0; x < cols; ++x) {
       if (rejections[x] != codeOf(Rejection::kNone)) continue;
       const int seen = seenBy(x, y, disparities_px[x]);
-      if (seen >= 0 && std::abs(claim_disparities_px[seen] - disparities_px[x]) > tolerance_px)
+      if (seen >= 0 && std::abs(claims[seen] % kCostUnit - disparities_px[x]) > tolerance_px)
         rejections[x] = codeOf(Rejection::kLeftRight);
     }
   }
@@ -101,24 +104,8 @@ void Validator::checkSecondary(const Winners& winners, const SecondaryView& view
 
 void Validator::checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
                               cv::Mat1b& rejection) {
-  const cv::Mat1b& reference = *input.reference_census;
-  const cv::Rect image({0, 0}, rejection.size());
-  own_shares_.create(rejection.size());
-  for (int y = 0; y < rejection.rows; ++y) {
-    for (int x = 0; x < rejection.cols; ++x) {
-      int bits = 0, cameras = 0;
-      for (const SecondaryView& view : input.views) {
-        const cv::Point seen = cv::Point(x, y) + view.offsetAt(winners.disparity_px(y, x));
-        if (!image.contains(seen)) continue;
-        bits += bitCount(static_cast<std::uint8_t>(reference(y, x) ^ view.census()(seen)));
-        ++cameras;
-      }
-      own_shares_(y, x) =
-          cameras > 0 ? static_cast<float>(bits) / static_cast<float>(cameras * kCensusBits) : 0.5F;
-    }
-  }
-  cv::blur(own_shares_, own_shares_, {input.window_px, input.window_px}, {-1, -1}, cv::BORDER_REFLECT);
-  rejection.setTo(codeOf(Rejection::kTexture), (own_shares_ > largest_share) & (rejection == 0));
+  cv::blur(winners.own_cost, own_costs_, {input.window_px, input.window_px}, {-1, -1}, cv::BORDER_REFLECT);
+  rejection.setTo(codeOf(Rejection::kTexture), (own_costs_ > largest_share * kChanceCost) & (rejection == 0));
 }
 
 }  // namespace cornerstone

@@ -184,7 +184,8 @@ class BadMessages(unittest.TestCase):
         rospy.sleep(0.2)
         self.assert_lives()
 
-    def test_stereo(self):
+    def start_stereo(self):
+        """Two cameras: publishers of their calibrations, and a function that sends a pair of images."""
         self.start("trinocular_stereo", "stereo", third_camera=False)
         cameras = ("reference", "right")
         infos = [self.publisher(f"/a/{c}/camera_info", CameraInfo) for c in cameras]
@@ -196,6 +197,20 @@ class BadMessages(unittest.TestCase):
                 message.header.stamp = stamp
                 publisher.publish(message)
             rospy.sleep(0.06)
+        return infos, send
+
+    def test_stereo_images_before_their_calibrations(self):
+        infos, send = self.start_stereo()
+        send(image(), image())
+        send(image(), image())
+        for publisher, message in zip(infos, (info(), info(shift=-FOCAL_PX * BASELINE_M))):
+            publisher.publish(message)
+        chain.wait_until(lambda: self.diagnostics.count(self.stage, "processed") == 2, "both sets that waited", 10)
+        self.assertEqual(self.dropped(), 0, self.diagnostics.of(self.stage))
+        self.assert_lives()
+
+    def test_stereo(self):
+        infos, send = self.start_stereo()
         send(image(), image())
         self.wait_for_drop("camera_info: none received yet")
         good = info(), info(shift=-FOCAL_PX * BASELINE_M)

@@ -82,7 +82,7 @@ TEST(StereoMatcher, BareWallIsRefused) {
     StereoImages images{photographed(wall, 2, 1, random), photographed(wall, 2, 1, random),
                         photographed(wall, 2, 1, random)};
     EXPECT_EQ(shareOf(matched(images), Rejection::kNone), 0) << "three cameras, seed " << seed;
-    EXPECT_GT(shareOf(matched(images), Rejection::kTexture), 0.8) << "three cameras, seed " << seed;
+    EXPECT_GT(shareOf(matched(images), Rejection::kTexture), 0.65) << "three cameras, seed " << seed;
     images.top.release();
     EXPECT_EQ(shareOf(matched(images), Rejection::kNone), 0) << "two cameras, seed " << seed;
   }
@@ -110,7 +110,8 @@ TEST(StereoMatcher, RepetitivePatternIsRefusedForItsUniqueness) {
       matched({photographed(stripes, 2, 1, random), photographed(shifted, 2, 1, random), {}}, wideWindow());
   const cv::Mat middle =
       disparity.rejection(cv::Rect(40, 10, 100, 100)) == static_cast<int>(Rejection::kUniqueness);
-  EXPECT_GT(cv::countNonZero(middle), 0.9 * 100 * 100);
+  EXPECT_GT(cv::countNonZero(middle), 0.6 * 100 * 100);  // others fail other checks
+  EXPECT_LT(shareOf(disparity, Rejection::kNone), 0.1);
 }
 
 TEST(StereoMatcher, TopCameraSeesHorizontalStripes) {

@@ -1,30 +1,24 @@
-// What chance makes of a cost of CostSweep. It counts flipped census bits, so its standard deviation goes
-// with its root, and with one camera each bit counts twice. The factor holds the window weights and what
-// neighbouring bits share; it was measured on synthetic surfaces (test/stereo/subpixel_test.cpp) as the
-// scatter of the equiangular fit.
+// What noise makes of a window cost of CostSweep: the standard deviation of the difference of two costs
+// beside the winner. Absolute differences scatter by about their mean, n of them by its root; neighbouring
+// features share pixels. The factors were measured on synthetic surfaces (test/stereo/subpixel_test.cpp).
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 
-#include "cornerstone/stereo/cost_sweep.h"
-
 namespace cornerstone {
 
 class CostNoise {
  public:
-  explicit CostNoise(std::size_t cameras) : factor_(4.4F * std::sqrt(2.F / static_cast<float>(cameras))) {}
-  float sigmaAt(float cost) const { return factor_ * std::sqrt(cost + kLeastCost); }
+  CostNoise(int window_px, std::size_t cameras)
+      : factor_(kFactor / static_cast<float>(window_px) * std::sqrt(2.F / static_cast<float>(cameras))) {}
+  float sigmaAt(float cost) const { return factor_ * (cost + kLeastCost); }
+  float share() const { return factor_; }  // of the cost, without what rounding adds
 
  private:
-  static constexpr float kLeastCost = 25.F;  // about one flipped bit: images are rounded to grey levels
+  static constexpr float kFactor = 0.85F;
+  static constexpr float kLeastCost = 16;  // images are rounded to grey levels
   float factor_;
 };
-
-// The cost of two images that have nothing to do with each other: half of all bits.
-constexpr float chanceCost(int window_px) {
-  const int area = window_px * window_px;
-  return static_cast<float>(CostSweep::kWeightSum * area * kCensusBits) / CostSweep::kDivisor;
-}
 
 }  // namespace cornerstone

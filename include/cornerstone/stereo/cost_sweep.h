@@ -1,86 +1,75 @@
-// Plane sweep: for every candidate disparity the census costs of all camera pairs are summed, then summed
-// over three windows, one inside the other, and each pixel keeps its best and second-best local minimum. With
-// S the sum over the fine window (w x w px):
+// The disparity search. The cost of a disparity at a pixel is the feature differences of all camera pairs,
+// summed over a window; a disparity image is then sought whose costs are low and which changes seldom (semi-
+// global matching, Hirschmueller, 2008), along paths from the left, the right and above:
 //
-//   cost(x, y, d) = (32 S(x, y) + 2 sum S(x + i w, y + j w; -1..1) + sum S(x + i w, y + j w; -2..2)) / 2
+//   E = sum C(x, d(x)) + P1 [neighbour differs by 1] + P2(brightness step) [neighbour differs by more]
 //
-// so that the windows of w, 3 w and 5 w count about alike. The fine one keeps depth edges in place, the wide
-// ones decide where there is little texture or much noise. Where one camera does not see a pixel the other's
-// cost counts double, so that windows across its border stay fair; where none does, chance is assumed.
+// A depth step costs less where the brightness changes too. Where one camera does not see a pixel the other's
+// cost counts double, so that windows across its border stay fair; where none does, the cost at disparity 0
+// is assumed.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "cornerstone/stereo/census.h"
+#include "cornerstone/stereo/secondary_view.h"
 
 namespace cornerstone {
 
-// A secondary camera: its census image and where it sees a reference pixel.
-class SecondaryView {
- public:
-  SecondaryView(const cv::Mat1b& census, const cv::Point2d& shift);  // shift as in TrinocularRig
-  const cv::Mat1b& census() const { return *census_; }
-  // Seen pixel less reference pixel, rounded to whole pixels.
-  cv::Point offsetAt(int disparity_px) const {
-    return {(shift_fixed_.x * disparity_px + kHalf) >> kFractionBits,
-            (shift_fixed_.y * disparity_px + kHalf) >> kFractionBits};
-  }
-
- private:
-  static constexpr int kFractionBits = 16, kHalf = 1 << (kFractionBits - 1);
-  const cv::Mat1b* census_;
-  cv::Point shift_fixed_;
-};
-
 struct SweepInput {
-  const cv::Mat1b* reference_census = nullptr;
-  std::vector<SecondaryView> views;  // one or two
-  int max_disparity_px = 0;          // disparities 0 .. max + 1 are swept; the two ends are only neighbours
-  int window_px = 7;                 // edge of the fine window: odd, 3..7
+  const cv::Mat1b* reference_image = nullptr;
+  const GradientFeatures* reference = nullptr;
+  std::array<SecondaryView, 2> views;
+  std::size_t view_count = 0;
+  int max_disparity_px = 0;
+  int window_px = 7;  // edge, odd, 3..7
 };
 
-// One value a pixel; costs are below kNoCost.
+// One value a pixel.
 struct Winners {
   static constexpr short kNoCost = 32767;
-  cv::Mat1s disparity_px;  // of the lowest local minimum; 0 or max + 1: at the range's end
-  cv::Mat1s cost;          // kNoCost: no camera sees the pixel
+  cv::Mat1s disparity_px;  // of the lowest sum over all paths
+  cv::Mat1s cost;          // over the window: see windowCost(); kNoCost: no camera sees the pixel
   cv::Mat1s cost_before;   // at disparity - 1
   cv::Mat1s cost_after;    // at disparity + 1
-  cv::Mat1s second_cost;   // of the next best local minimum; kNoCost: there is none
+  cv::Mat1s chance_cost;   // of disparities just outside the search: what unrelated pixels cost here
+  cv::Mat1b own_cost;      // of the pixel alone
+  cv::Mat1b margin, lead;  // see PathWinner
 };
 
 class CostSweep {
  public:
-  static constexpr int kFineWeight = 32, kInnerWeight = 2, kDivisor = 2;  // of the sum above
-  static constexpr int kWeightSum = kFineWeight + 9 * kInnerWeight + 25;
-  const Winners& run(const SweepInput& input);
+  // Disparities are searched up to max_disparity_px rounded up to a number that suits the processor.
+  static int disparitiesFor(int max_disparity_px);
+  const Winners& run(SweepInput& input);
 
  private:
-  struct Band {
-    int first_row = 0, end_row = 0;  // rows to answer
-    int first_sum = 0, end_sum = 0;  // rows of fine sums needed
-    int first_pair = 0, end_pair = 0;
-  };
-  void prepare(const SweepInput& input);
-  Band bandFrom(int first_row) const;
-  void sweepBand(const Band& band);
-  void pairCosts(const Band& band, int disparity_px);
-  void fineSums(const Band& band);
-  void sumColumns(int row);
-  void windowCosts(const Band& band, int disparity_px);
-  void keepBest(const Band& band, int disparity_px);
-  void maskUnseen(short* costs, int row, int disparity_px) const;
+  void prepare(SweepInput& input);
+  void planeCosts(int disparity_px);
+  void endCosts();
+  std::uint8_t* pairCostsOf(int row);
+  void windowSums(int row);
+  void jumpPenalties(int row);
+  void keep(int row);
 
-  SweepInput input_;
+  SweepInput* input_ = nullptr;
+  const SweepKernels* kernels_ = nullptr;
   cv::Size size_px_;
-  int radius_px_ = 0;
-  cv::Mat1b pair_costs_;                   // of a row, summed over cameras, with borders mirrored
-  cv::Mat1b row_sums_;                     // of pair costs along the fine window
-  cv::Mat_<std::uint16_t> fine_sums_;      // over the fine window, with borders mirrored
-  cv::Mat_<std::uint16_t> inner_, outer_;  // of a row, see sumColumns
-  std::array<cv::Mat1s, 3> costs_;         // of the disparities d, d - 1, d - 2
+  int disparities_ = 0, rows_known_ = 0;
+  std::vector<int> entering_, leaving_;  // columns of the sliding window, mirrored
+  cv::Mat1b pair_costs_;                 // a ring of rows, as many as a window and one
+  cv::Mat1b zeros_;
+  cv::Mat_<std::uint16_t> column_sums_, sums_;
+  cv::Mat1b costs_, from_left_, from_right_, from_above_, lowest_above_, path_sums_;
+  std::array<std::uint8_t, 256> jump_penalty_{};  // by brightness step
+  std::vector<std::uint8_t> jump_ahead_, jump_down_;
+  std::vector<PathWinner> path_winners_;
+  cv::Mat1s nearest_, farthest_;  // window costs of the disparities just outside the search
+  cv::Mat1b plane_;               // pair costs at one disparity
+  std::array<cv::Mat1b, 2> camera_planes_;
+  cv::Mat1b unseen_costs_;
   Winners winners_;
 };
 

@@ -17,6 +17,7 @@ struct SubpixelInput {
   const Winners* winners = nullptr;
   const cv::Mat1b* rejection = nullptr;  // only winners with kNone count
   std::size_t cameras = 2;               // secondary ones: 1 or 2
+  int window_px = 7;                     // of the sweep
 };
 
 struct SubpixelParams {

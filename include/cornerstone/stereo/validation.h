@@ -11,12 +11,16 @@
 namespace cornerstone {
 
 struct ValidationParams {
-  double smallest_margin_sigmas = 1.5;    // between best and second-best cost, in CostNoise of the best
-  double smallest_gain_sigmas = 6;        // of the best cost under chanceCost(), in CostNoise of the latter
+  double smallest_margin_share = 0.5;  // between best and second-best path sums, of kChanceCost
+  // Margin (as above) times Winners::lead in the cost's noise (CostNoise).
+  double strong_product = 3;
   double smallest_edge_cost_ratio = 1.5;  // see EdgeCheck
-  double largest_own_share = 0.4;         // of differing bits in the fine window at the winner; chance: 0.5
+  double largest_own_share = 0.8;         // of kChanceCost: mean cost of the window's pixels at their winners
   int left_right_tolerance_px = 1;  // whole pixels between the answers of two reference pixels seen as one
 };
+
+// What a pixel's costs say of its answer: beyond doubt, or not, or that there is nothing to correlate.
+enum class Evidence : std::uint8_t { kWeak = 0, kStrong = 1, kFlat = 2 };
 
 class Validator {
  public:
@@ -24,6 +28,9 @@ class Validator {
   // image.
   void check(const Winners& winners, const SweepInput& input, const ValidationParams& params,
              cv::Mat1b& rejection);
+
+  // Evidence of each pixel in the last check.
+  const cv::Mat1b& evidence() const { return evidence_; }
 
  private:
   void checkWinners(const Winners& winners, const SweepInput& input, const ValidationParams& params,
@@ -39,8 +46,9 @@ class Validator {
                      cv::Mat1b& rejection);
 
   EdgeCheck edge_check_;
-  cv::Mat1f own_shares_;
-  cv::Mat1s claim_cost_, claim_disparity_px_;
+  cv::Mat1b own_costs_, evidence_;
+  cv::Mat1i claims_;  // by secondary pixel
+  std::vector<cv::Point> offsets_;
 };
 
 }  // namespace cornerstone

@@ -1,0 +1,78 @@
+// The inner loops of the disparity search, compiled once for every processor of the architecture and on
+// x86-64 once more for AVX2, which sweepKernels() chooses where the processor has it. Rows of costs lie pixel
+// by pixel: cost(x, i) at x * disparities + i, where i is a disparity less one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cornerstone {
+
+constexpr int kFeatureChannels = 4;
+constexpr int kLargestFeature = 31;  // two cameras' differences over all channels fit a byte
+// The cost of pixels that have nothing to do with each other, as measured on natural images.
+constexpr int kChanceCost = 80;
+constexpr int kSearchChance = 60;  // the same in the costs of the search, whose path costs stay below 256
+
+// Where a secondary camera sees the pixels of one reference row: its feature c at disparity i + 1 of column x
+// is lines[c][x * step + i]; seen[x] disparities of column x lie within its image. Readable a vector beyond.
+struct SeenLines {
+  const std::uint8_t* lines[kFeatureChannels] = {};
+  std::ptrdiff_t step = 0;
+  const short* seen = nullptr;
+};
+
+// What no camera sees is given the pixel's cost at disparity 0, that of unrelated pixels as a rule: on a bare
+// wall it is nothing, so that the border of what is seen makes no match there.
+struct PairCostRow {
+  const std::uint8_t* reference[kFeatureChannels] = {};
+  SeenLines cameras[2];
+  int camera_count = 1;
+  const std::uint8_t* unseen = nullptr;  // costs of unseen disparities by column
+  int width = 0, disparities = 0;
+};
+
+struct WindowRow {
+  const std::uint16_t* column_sums = nullptr;  // over the rows of the window
+  const int* entering = nullptr;               // column that enters the window at x, and the one that leaves
+  const int* leaving = nullptr;
+  int window_px = 0, width = 0, disparities = 0;
+  unsigned scale = 0;  // costs = sums * scale >> 16
+};
+
+// Of one pixel, over all disparities.
+struct PathWinner {
+  short index = 0;          // i of the lowest sum
+  std::uint8_t margin = 0;  // second lowest sum, at another than the neighbouring disparities, less lowest
+  std::uint8_t lead = 0;    // lowest of the pixel's own costs, likewise, less that of the winner; not below 0
+};
+
+// Each pixel's path costs lie between two bytes of 255: cost(x, i) at x * (disparities + 2) + 1 + i.
+struct PathRow {
+  const std::uint8_t* costs = nullptr;
+  const std::uint8_t* jump_ahead = nullptr;  // penalty of a depth step between x - 1 and x
+  const std::uint8_t* jump_down = nullptr;   // between the row above and this one
+  int width = 0, disparities = 0;
+  std::uint8_t slope_penalty = 0;  // of a change by one disparity
+  std::uint8_t *from_left = nullptr, *from_right = nullptr, *from_above = nullptr;
+  std::uint8_t* lowest_above = nullptr;  // of each pixel's costs from above
+  std::uint8_t* sums = nullptr;          // of one pixel, scratch
+  PathWinner* winners = nullptr;
+};
+
+struct SweepKernels {
+  int lanes;  // disparities are padded to a multiple
+  void (*pairCosts)(const PairCostRow& row, std::uint8_t* costs);
+  // sums += entering - leaving
+  void (*slide)(std::uint16_t* sums, const std::uint8_t* entering, const std::uint8_t* leaving, int count);
+  // Window sums, and costs: scaled, less the pixel's lowest.
+  void (*windowCosts)(const WindowRow& row, std::uint16_t* sums, std::uint8_t* costs);
+  // Path costs from the left and from the right.
+  void (*pathsAlong)(const PathRow& row);
+  // Takes the path from above on to this row, and chooses the winners by the sum of all paths.
+  void (*pathDown)(const PathRow& row);
+};
+
+const SweepKernels& sweepKernels();
+
+}  // namespace cornerstone

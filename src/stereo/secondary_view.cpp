@@ -1,0 +1,95 @@
+#include "cornerstone/stereo/secondary_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cornerstone {
+namespace {
+
+constexpr int kVector_bytes = 64;  // kernels read whole vectors
+
+}  // namespace
+
+void SecondaryView::prepare(const GradientFeatures& features, const cv::Point2d& shift, int disparities) {
+  features_ = &features;
+  shift_fixed_ = cv::Point2d(shift.x * (1 << kFractionBits), shift.y * (1 << kFractionBits));
+  vertical_ = std::abs(shift.y) > std::abs(shift.x);
+  backwards_ = (vertical_ ? shift.y : shift.x) < 0;
+  disparities_ = disparities;
+  steps_.resize(static_cast<std::size_t>(disparities));
+  unit_ = true;
+  for (int i = 0; i < disparities; ++i) {
+    const cv::Point offset = offsetAt(i + 1);
+    int& step = steps_[static_cast<std::size_t>(i)];
+    step = std::abs(vertical_ ? offset.y : offset.x);
+    unit_ = unit_ && step == i + 1;
+  }
+  countSeen();
+  const cv::Rect image(0, 0, lineLength(), lineCount());
+  for (std::size_t c = 0; c < lines_.size(); ++c) {
+    const bool fresh =
+        lines_[c].rows != image.height || lines_[c].cols != image.width + disparities + kVector_bytes;
+    lines_[c].create(image.height, image.width + disparities + kVector_bytes);
+    if (fresh) lines_[c].setTo(0);
+    cv::Mat1b ordered = lines_[c](image);
+    const cv::Mat1b* along = &features.channel(c);
+    if (vertical_) {
+      cv::transpose(*along, turned_);
+      along = &turned_;
+    }
+    backwards_ ? cv::flip(*along, ordered, 1) : along->copyTo(ordered);
+  }
+}
+
+// Where shifts are no whole pixels, the features are fetched one by one.
+void SecondaryView::gather(int row) {
+  const int width = features_->size().width, length = lineLength();
+  for (std::size_t c = 0; c < lines_.size(); ++c) {
+    gathered_[c].create(1, width * disparities_ + kVector_bytes);
+    std::uint8_t* out = gathered_[c][0];
+    for (int x = 0; x < width; ++x) {
+      const int at = vertical_ ? row : x, from = backwards_ ? length - 1 - at : at;
+      const std::uint8_t* line = lines_[c][vertical_ ? x : row] + from;
+      const int end = length - from;
+      for (int i = 0; i < disparities_; ++i, ++out) {
+        const int step = steps_[static_cast<std::size_t>(i)];
+        *out = step < end ? line[step] : std::uint8_t{0};
+      }
+    }
+    out_.lines[c] = gathered_[c][0];
+  }
+  out_.step = disparities_;
+}
+
+void SecondaryView::countSeen() {
+  const cv::Size size = features_->size();
+  const auto seenFrom = [&](int at) {
+    const int room = backwards_ ? at : lineLength() - 1 - at;
+    return static_cast<short>(std::upper_bound(steps_.begin(), steps_.end(), room) - steps_.begin());
+  };
+  seen_.resize(static_cast<std::size_t>(vertical_ ? size.height : 1));
+  for (std::vector<short>& row : seen_) row.resize(static_cast<std::size_t>(size.width));
+  for (int at = 0; at < lineLength(); ++at) {
+    if (vertical_)
+      std::fill(seen_[static_cast<std::size_t>(at)].begin(), seen_[static_cast<std::size_t>(at)].end(),
+                seenFrom(at));
+    else
+      seen_[0][static_cast<std::size_t>(at)] = seenFrom(at);
+  }
+}
+
+const SeenLines& SecondaryView::linesOf(int row) {
+  const int length = lineLength();
+  out_.seen = seenOf(row);
+  if (!unit_) {
+    gather(row);
+    return out_;
+  }
+  const int at = vertical_ ? row : 0;
+  for (std::size_t c = 0; c < lines_.size(); ++c)
+    out_.lines[c] = lines_[c][vertical_ ? 0 : row] + (backwards_ ? length - at : at + 1);
+  out_.step = vertical_ ? static_cast<std::ptrdiff_t>(lines_[0].step) : backwards_ ? -1 : 1;
+  return out_;
+}
+
+}  // namespace cornerstone

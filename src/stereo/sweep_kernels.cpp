@@ -1,0 +1,22 @@
+#include "cornerstone/stereo/sweep_kernels.h"
+
+#include <opencv2/core/utility.hpp>
+
+#include "sweep_kernels_impl.h"
+
+namespace cornerstone {
+
+#ifdef CORNERSTONE_WITH_AVX2
+const SweepKernels& sweepKernelsAvx2();
+#endif
+
+const SweepKernels& sweepKernels() {
+  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown};
+#ifdef CORNERSTONE_WITH_AVX2
+  static const bool has_avx2 = cv::checkHardwareSupport(CV_CPU_AVX2);
+  if (has_avx2) return sweepKernelsAvx2();
+#endif
+  return plain;
+}
+
+}  // namespace cornerstone
