@@ -61,6 +61,18 @@ int GradientFeatures::costAt(cv::Point here, const GradientFeatures& other, cv::
   return cost;
 }
 
+int GradientFeatures::costAround(cv::Point here, const GradientFeatures& other, cv::Point there) const {
+  int cost = 0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      const std::uint8_t *a = channels_[c][here.y + dy] + here.x,
+                         *b = other.channels_[c][there.y + dy] + there.x;
+      cost += std::abs(a[-1] - b[-1]) + std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]);
+    }
+  }
+  return cost;
+}
+
 void GradientFeatures::costs(const GradientFeatures& other, cv::Point offset, cv::Mat1b& costs) const {
   static_assert(kChannels == 4);
   const cv::Rect image({0, 0}, size()), seen = image & (image - offset);

@@ -31,9 +31,9 @@ struct StereoParams {
   // 480 px, 7 from there on.
   int window_px = 0;
   // Between a pixel's best and second-best disparity, in costs of a pixel that has nothing to do with the
-  // other, summed over all paths: patterns and most of bare walls fail here. Half: a tenth more wrong answers
-  // on photographs; double: two in a hundred fewer answers there.
-  double smallest_margin_share = 0.5;
+  // other, summed over all paths: patterns and most of bare walls fail here. Half: a twentieth more wrong
+  // answers on photographs; double: a hundredth fewer answers there.
+  double smallest_margin_share = 0.3;
   // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px
   // (else surfaces grow over their surroundings). 1: any better; 3: nearly every pixel beside an edge is
   // dropped, thin things with it.
