@@ -34,13 +34,14 @@ double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
 bool EdgeCheck::standsOut(const Winners& winners, const SweepInput& input, cv::Point at,
                           double smallest_cost_ratio) const {
   const int reach_px = input.window_px / 2 + 1, own_px = winners.disparity_px(at);
-  const double own_cost = costAround(input, at, own_px);
+  double own_cost = -1;
   bool beside_none = false;
   for (const cv::Point step : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
     const cv::Point other = at + step * reach_px;
     if (other.x < 0 || other.y < 0 || other.x >= before_.cols || other.y >= before_.rows) continue;
     const int other_px = winners.disparity_px(other);
     if (std::abs(other_px - own_px) <= kStep_px) continue;
+    if (own_cost < 0) own_cost = costAround(input, at, own_px);
     beside_none = beside_none || before_(other) != 0;
     if (before_(other) == 0 && costAround(input, at, other_px) < smallest_cost_ratio * own_cost) return false;
   }

@@ -130,8 +130,11 @@ void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
     for (int x = 0; x < verdicts_.cols; ++x) {
       if (verdicts[x] == SurfaceFilter::kGood) continue;
       const bool flat = evidence[x] == static_cast<std::uint8_t>(Evidence::kFlat);
-      const Rejection weak = flat ? Rejection::kTexture : Rejection::kUniqueness;
-      reject(disparity, y, x, verdicts[x] == SurfaceFilter::kSmall ? Rejection::kSurface : weak);
+      const bool small = verdicts[x] == SurfaceFilter::kSmall;
+      reject(disparity, y, x,
+             flat    ? Rejection::kTexture
+             : small ? Rejection::kSurface
+                     : Rejection::kUniqueness);
     }
   }
 }

@@ -11,7 +11,7 @@ const SweepKernels& sweepKernelsAvx2();
 #endif
 
 const SweepKernels& sweepKernels() {
-  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown};
+  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown, average};
 #ifdef CORNERSTONE_WITH_AVX2
   static const bool has_avx2 = cv::checkHardwareSupport(CV_CPU_AVX2);
   if (has_avx2) return sweepKernelsAvx2();

@@ -209,5 +209,22 @@ void pathDown(const PathRow& row) {
   }
 }
 
+void average(const AverageRow& row) {
+  using Floats = cv::v_float32;
+  const Floats largest_step = cv::vx_setall_f32(row.largest_step), least = cv::vx_setall_f32(1e-12F);
+  for (int x = 0; x < row.width; x += Floats::nlanes) {
+    const Floats middle = cv::vx_load(row.values + x);
+    Floats sum = cv::vx_setzero_f32(), weights = cv::vx_setzero_f32();
+    for (int i = -row.radius; i <= row.radius; ++i) {
+      const Floats ahead = cv::vx_load(row.values + x + i * row.step) - middle;
+      const Floats weight = cv::vx_load(row.weights + x + i * row.step) & (cv::v_abs(ahead) <= largest_step);
+      sum += weight * ahead;
+      weights += weight;
+    }
+    cv::v_store(row.means + x, middle + sum / cv::v_max(weights, least));
+    cv::v_store(row.weight_sums + x, weights);
+  }
+}
+
 }  // namespace
 }  // namespace cornerstone
