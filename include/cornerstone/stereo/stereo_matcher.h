@@ -22,6 +22,9 @@ struct StereoImages {  // rectified grey images of one instant and of one size
   cv::Mat1b top;  // empty: two cameras
 };
 
+// Throws InputError when the images are empty or differ in size from each other or from the rig.
+void requireUsable(const StereoImages& images, const TrinocularRig& rig);
+
 struct StereoParams {
   // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px,
   // B 0.12 m).
@@ -68,7 +71,7 @@ void describe(ParamVisitor& visitor, StereoParams& params);
 class StereoMatcher {
  public:
   explicit StereoMatcher(const StereoParams& params);  // throws InputError on parameters out of range
-  // Throws InputError when the images are empty or differ in size from each other or from the rig.
+  // Throws InputError as requireUsable.
   Disparity match(const StereoImages& images, const TrinocularRig& rig);
   // The same into an answer that is used again and again.
   void match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
