@@ -32,6 +32,7 @@ class GradientFeatures {
 
  private:
   std::array<cv::Mat1b, kChannels> channels_;
+  cv::Mat4b together_;  // the same channels pixel by pixel, and one row more for reading whole vectors
   cv::Mat1b smooth_, padded_, padded_smooth_;  // kept, so that nothing is allocated frame by frame
 };
 
