@@ -1,24 +1,25 @@
 #include "cornerstone/landmarks/corner_fit.h"
 
-#include <ceres/tiny_solver.h>
-#include <ceres/tiny_solver_cost_function_adapter.h>
-
-#include <Eigen/Cholesky>
+#include <Eigen/Dense>
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 namespace cornerstone {
 namespace {
 
-using Adapter = ceres::TinySolverCostFunctionAdapter<Eigen::Dynamic, 3>;
-
-constexpr double kFacesArmCosine = 0.80;  // 37 degrees: an edge that may belong to an arm
-constexpr int kSettleRounds = 3;          // edges are chosen anew at each; the choice stays after two
-constexpr double kConverged = 1e-2;       // cells and degrees: a change "very small" to the paper
+constexpr double kFacesArmCosine = 0.80;   // 37 degrees: an edge that may belong to an arm
+constexpr double kMayFaceArmCosine = 0.6;  // the same before the arms have settled
+constexpr int kSettleRounds = 3;           // edges are chosen anew at each; the choice stays after two
+constexpr double kConverged = 0.05;        // cells and degrees: a change "very small" to the paper
+constexpr int kMaxBins = 64;
 
 int pointsPerArm(const LandmarkParams& params) {
   return std::max(static_cast<int>(std::lround(params.arm_length_m / params.model_spacing_m)) + 1, 3);
 }
+
+// Of an arm's length, for its support.
+int binsOf(const LandmarkParams& params) { return std::min(pointsPerArm(params) - 1, kMaxBins); }
 
 // What the edges beside both arms say of a corner pose.
 struct ArmEvidence {
@@ -29,14 +30,13 @@ struct ArmEvidence {
   std::array<double, 2> support{};  // share of each arm's length that edges cover
 };
 
-ArmEvidence gather(const EdgeIndex& index, const Pose2& pose, double facing, const LandmarkParams& params) {
+ArmEvidence gather(const std::vector<EdgePoint>& edges, const Pose2& pose, double facing,
+                   const LandmarkParams& params) {
   ArmEvidence evidence;
-  const int bins = pointsPerArm(params) - 1;
-  std::array<std::vector<bool>, 2> covered{std::vector<bool>(static_cast<std::size_t>(bins)),
-                                           std::vector<bool>(static_cast<std::size_t>(bins))};
+  const int bins = binsOf(params);
+  std::array<std::bitset<kMaxBins>, 2> covered;
   const Eigen::Matrix2d rotation = pose.rotation();
-  index.forEachNear(pose.translation(), [&](int i) {
-    const EdgePoint& edge = index.edges()[static_cast<std::size_t>(i)];
+  for (const EdgePoint& edge : edges) {
     const Eigen::Vector2d offset = edge.position_m - pose.translation();
     const Eigen::Vector2d p = rotation.transpose() * offset;
     const Eigen::Vector2d n = rotation.transpose() * edge.normal;
@@ -44,8 +44,8 @@ ArmEvidence gather(const EdgeIndex& index, const Pose2& pose, double facing, con
       const double along = p[arm], away = p[1 - arm];
       if (along < 0 || along >= params.arm_length_m || std::abs(away) > params.polish_reach_m) continue;
       if (facing * n[1 - arm] < kFacesArmCosine) continue;
-      covered[static_cast<std::size_t>(arm)][static_cast<std::size_t>(along / params.arm_length_m * bins)] =
-          true;
+      covered[static_cast<std::size_t>(arm)].set(
+          static_cast<std::size_t>(along / params.arm_length_m * bins));
       const Eigen::Vector2d axis = rotation.col(1 - arm);
       // The distance away = axis . (edge - apex) falls as the apex moves along the axis, and turns with the
       // arm.
@@ -56,10 +56,9 @@ ArmEvidence gather(const EdgeIndex& index, const Pose2& pose, double facing, con
       ++evidence.count;
       break;
     }
-  });
+  }
   for (std::size_t arm = 0; arm < 2; ++arm)
-    evidence.support[arm] =
-        static_cast<double>(std::count(covered[arm].begin(), covered[arm].end(), true)) / bins;
+    evidence.support[arm] = static_cast<double>(covered[arm].count()) / bins;
   return evidence;
 }
 
@@ -70,31 +69,73 @@ CornerFitter::CornerFitter(const DistanceField& field, const EdgeIndex& index, c
     : geometry_(geometry),
       params_(params),
       index_(index),
-      cost_(field, params.arm_length_m / geometry.resolution_m, pointsPerArm(params), params.stabiliser) {}
+      cost_(field, params.arm_length_m / geometry.resolution_m, pointsPerArm(params), params.stabiliser),
+      residuals_(cost_.num_residuals()),
+      jacobian_(cost_.num_residuals(), 3) {}
 
-Pose2 CornerFitter::fit(const Pose2& guess) {
+Pose2 CornerFitter::approach(const Pose2& guess) {
   const Eigen::Vector2d cells = geometry_.toCells(guess.translation());
   Eigen::Vector3d x(cells.x(), cells.y(), guess.yaw_rad * 180 / M_PI);
-  const Adapter adapter(cost_);
-  ceres::TinySolver<Adapter> solver;
-  solver.options.max_num_iterations = 2;  // one step: the stabiliser's x_prev is renewed after each
-  solver.options.initial_trust_region_radius = 1e8;  // the stabiliser alone holds the step
+  double* jacobians[] = {jacobian_.data()};
   for (int i = 0; i < params_.max_iterations; ++i) {
-    const Eigen::Vector3d previous = x;
-    cost_.setPrevious(previous);
-    solver.Solve(adapter, &x);
-    if ((x - previous).cwiseAbs().maxCoeff() < kConverged) break;
+    cost_.setPrevious(x);  // the stabiliser holds each step, not the way from the guess
+    const double* block = x.data();
+    cost_.Evaluate(&block, residuals_.data(), jacobians);
+    // (J'J + W'W) (x_next - x) = -J'e: W'W comes with the stabiliser's rows of J, whose residuals are 0 here.
+    const Eigen::Vector3d step = jacobian_.transpose().lazyProduct(jacobian_).eval().ldlt().solve(
+        -(jacobian_.transpose() * residuals_));
+    x += step;
+    if (step.cwiseAbs().maxCoeff() < kConverged) break;
   }
   const Eigen::Vector2d apex = geometry_.toMetres(x.head<2>());
   return {apex.x(), apex.y(), wrapAngle(x[2] * M_PI / 180)};
 }
 
-std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, CornerKind kind) const {
+// Of either facing, the edges that may lie beside the arms while the corner settles; none where edges do not
+// cover the arms.
+std::array<std::vector<EdgePoint>, 2> CornerFitter::edgesAround(const Pose2& corner) const {
+  const double reach_m =
+      params_.dilation_m + params_.polish_reach_m;  // a step, then the search beside the arms
+  const int bins = binsOf(params_);
+  const Eigen::Matrix2d rotation = corner.rotation();
+  std::array<std::vector<EdgePoint>, 2> around;
+  std::array<std::array<std::bitset<kMaxBins>, 2>, 2> covered;
+  const double half_m = (0.5 * params_.arm_length_m + reach_m) * rotation.row(0).cwiseAbs().sum();
+  const Eigen::Vector2d middle = corner * Eigen::Vector2d::Constant(0.5 * params_.arm_length_m);
+  index_.forEachNear(middle, half_m, [&](const EdgePoint& edge) {
+    const Eigen::Vector2d p = rotation.transpose() * (edge.position_m - corner.translation());
+    if (p.minCoeff() < -reach_m || p.minCoeff() > reach_m || p.maxCoeff() > params_.arm_length_m + reach_m)
+      return;
+    const Eigen::Vector2d n = rotation.transpose() * edge.normal;
+    bool belongs[2] = {false, false};
+    for (int arm = 0; arm < 2; ++arm) {
+      const double faces = n[1 - arm], along = p[arm], away = std::abs(p[1 - arm]);
+      if (std::abs(faces) < kMayFaceArmCosine || away > reach_m) continue;
+      const std::size_t facing = faces > 0 ? 0 : 1;
+      belongs[facing] = true;
+      if (along >= 0 && along < params_.arm_length_m && away <= params_.polish_reach_m &&
+          std::abs(faces) >= kFacesArmCosine)
+        covered[facing][static_cast<std::size_t>(arm)].set(
+            static_cast<std::size_t>(along / params_.arm_length_m * bins));
+    }
+    for (std::size_t facing = 0; facing < 2; ++facing)
+      if (belongs[facing]) around[facing].push_back(edge);
+  });
+  for (std::size_t facing = 0; facing < 2; ++facing)
+    if (static_cast<double>(std::min(covered[facing][0].count(), covered[facing][1].count())) <
+        params_.min_support * bins)
+      around[facing].clear();
+  return around;
+}
+
+std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, const std::vector<EdgePoint>& edges,
+                                                   CornerKind kind) const {
   const double facing = kind == CornerKind::kInsideFree ? 1 : -1;
+  if (edges.empty()) return std::nullopt;
   Pose2 pose = near;
   ArmEvidence evidence;
   for (int round = 0; round <= kSettleRounds; ++round) {
-    evidence = gather(index_, pose, facing, params_);
+    evidence = gather(edges, pose, facing, params_);
     if (std::min(evidence.support[0], evidence.support[1]) < params_.min_support) return std::nullopt;
     if (round == kSettleRounds) break;
     const Eigen::Vector3d step = evidence.information.ldlt().solve(-evidence.gradient);
@@ -114,6 +155,17 @@ std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, CornerKind
       corner.rms_m * corner.rms_m + geometry_.resolution_m * geometry_.resolution_m / 12;
   corner.covariance = correlated * variance_m2 * evidence.information.inverse();
   return corner;
+}
+
+std::vector<CornerLandmark> CornerFitter::fit(const Pose2& guess) {
+  const Pose2 near = approach(guess);
+  const std::array<std::vector<EdgePoint>, 2> edges = edgesAround(near);
+  std::vector<CornerLandmark> corners;
+  for (std::size_t facing = 0; facing < 2; ++facing) {
+    const CornerKind kind = facing == 0 ? CornerKind::kInsideFree : CornerKind::kInsideSolid;
+    if (const auto corner = settle(near, edges[facing], kind)) corners.push_back(*corner);
+  }
+  return corners;
 }
 
 }  // namespace cornerstone

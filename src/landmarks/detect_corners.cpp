@@ -42,16 +42,16 @@ void describe(ParamVisitor& visitor, LandmarkParams& params) {
 
 Landmarks detectLandmarks(const GridMap& map, const LandmarkParams& params) {
   Landmarks landmarks;
-  landmarks.edges = findEdges(map, cellStates(map, params.edges), params.edges);
+  landmarks.states = cellStates(map, params.edges);
+  landmarks.edges = findEdges(map, landmarks.states, params.edges);
   if (landmarks.edges.empty()) return landmarks;
   const DistanceField field(landmarks.edges, map.geometry);
-  const EdgeIndex index(landmarks.edges, params.arm_length_m + params.polish_reach_m);
+  const EdgeIndex index(landmarks.edges, 0.5 * params.arm_length_m);
   CornerFitter fitter(field, index, map.geometry, params);
   std::vector<CornerLandmark> corners;
   for (const Pose2& candidate : findCornerCandidates(field, map.geometry, params)) {
-    const Pose2 pose = fitter.fit(candidate);
-    for (const CornerKind kind : {CornerKind::kInsideFree, CornerKind::kInsideSolid})
-      if (const auto corner = fitter.settle(pose, kind)) corners.push_back(*corner);
+    const std::vector<CornerLandmark> fitted = fitter.fit(candidate);
+    corners.insert(corners.end(), fitted.begin(), fitted.end());
   }
   landmarks.corners = suppressNear(std::move(corners), params.suppression_m);
   return landmarks;

@@ -5,26 +5,45 @@
 #include <cmath>
 
 namespace cornerstone {
+namespace {
+
+static_assert((kReachCells + 1) * kDistanceUnits < 256, "distances fit a byte");
+constexpr int kSquare = 2 * kReachCells + 1;
+constexpr int kPitch = 16;  // of a row of the stamp: a register's bytes
+
+// Distances around an edge, row by row.
+std::array<unsigned char, kSquare * kPitch> distanceStamp() {
+  std::array<unsigned char, kSquare * kPitch> stamp{};
+  for (int row = 0; row < kSquare; ++row)
+    for (int col = 0; col < kSquare; ++col)
+      stamp[static_cast<std::size_t>(row * kPitch + col)] = static_cast<unsigned char>(
+          std::min(std::lround(kDistanceUnits * std::hypot(col - kReachCells, row - kReachCells)),
+                   static_cast<long>((kReachCells + 1) * kDistanceUnits)));
+  return stamp;
+}
+
+}  // namespace
 
 // Only cells near an edge are ever asked: writing those costs a tenth of a transform of the whole map.
 DistanceField::DistanceField(const std::vector<EdgePoint>& edges, const GridGeometry& geometry)
-    : distances_(geometry.rows, geometry.cols, static_cast<float>(kReachCells + 1)) {
-  std::array<std::array<float, 2 * kReachCells + 1>, 2 * kReachCells + 1> around;
-  for (int r = -kReachCells; r <= kReachCells; ++r)
-    for (int c = -kReachCells; c <= kReachCells; ++c)
-      around[static_cast<std::size_t>(r + kReachCells)][static_cast<std::size_t>(c + kReachCells)] =
-          std::hypot(static_cast<float>(c), static_cast<float>(r));
+    : distances_(geometry.rows, geometry.cols,
+                 static_cast<unsigned char>((kReachCells + 1) * kDistanceUnits)) {
+  const auto stamp = distanceStamp();
   for (const EdgePoint& edge : edges) {
     const Cell cell = geometry.cellAt(edge.position_m);
     if (!geometry.contains(cell) || distances_(cell.row, cell.col) == 0) continue;
-    const int first = std::max(cell.col - kReachCells, 0),
-              last = std::min(cell.col + kReachCells, geometry.cols - 1);
-    for (int row = std::max(cell.row - kReachCells, 0);
-         row <= std::min(cell.row + kReachCells, geometry.rows - 1); ++row) {
-      float* to = distances_[row];
-      const float* from =
-          around[static_cast<std::size_t>(row - cell.row + kReachCells)].data() + kReachCells - cell.col;
-      for (int col = first; col <= last; ++col) to[col] = std::min(to[col], from[col]);
+    const int left = std::max(cell.col - kReachCells, 0),
+              right = std::min(cell.col + kReachCells, geometry.cols - 1);
+    const int bottom = std::max(cell.row - kReachCells, 0),
+              top = std::min(cell.row + kReachCells, geometry.rows - 1);
+    for (int row = bottom; row <= top; ++row) {
+      unsigned char* to = distances_[row] + left;
+      const unsigned char* from = &stamp[static_cast<std::size_t>((row - cell.row + kReachCells) * kPitch +
+                                                                  left - cell.col + kReachCells)];
+      if (right - left == kSquare - 1)  // a length known beforehand lets the compiler take the row at once
+        for (int i = 0; i < kSquare; ++i) to[i] = std::min(to[i], from[i]);
+      else
+        for (int i = 0; i <= right - left; ++i) to[i] = std::min(to[i], from[i]);
     }
   }
 }
@@ -34,18 +53,18 @@ double DistanceField::at(const Eigen::Vector2d& point_cells) const {
   return at(point_cells, gradient);
 }
 
-double DistanceField::at(const Eigen::Vector2d& point_cells, Eigen::Vector2d& gradient) const {
-  const double x = std::clamp(point_cells.x(), 0.0, static_cast<double>(distances_.cols - 1));
-  const double y = std::clamp(point_cells.y(), 0.0, static_cast<double>(distances_.rows - 1));
-  const int col = std::min(static_cast<int>(x), std::max(distances_.cols - 2, 0));
-  const int row = std::min(static_cast<int>(y), std::max(distances_.rows - 2, 0));
+double DistanceField::atBorder(const Eigen::Vector2d& point_cells, Eigen::Vector2d& gradient) const {
+  const Eigen::Vector2d last(distances_.cols - 1, distances_.rows - 1);
+  const Eigen::Vector2d inside = point_cells.cwiseMax(0).cwiseMin(last);
+  const int col = std::min(static_cast<int>(inside.x()), std::max(distances_.cols - 2, 0));
+  const int row = std::min(static_cast<int>(inside.y()), std::max(distances_.rows - 2, 0));
   const int right = std::min(col + 1, distances_.cols - 1), up = std::min(row + 1, distances_.rows - 1);
-  const double u = x - col, v = y - row;
-  const double a = distances_(row, col), b = distances_(row, right);
-  const double c = distances_(up, col), d = distances_(up, right);
-  gradient.x() = x == point_cells.x() ? (1 - v) * (b - a) + v * (d - c) : 0;
-  gradient.y() = y == point_cells.y() ? (1 - u) * (c - a) + u * (d - b) : 0;
-  return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
+  const double value =
+      interpolate({distances_(row, col), distances_(row, right), distances_(up, col), distances_(up, right)},
+                  inside - Eigen::Vector2d(col, row), gradient);
+  if (inside.x() != point_cells.x()) gradient.x() = 0;
+  if (inside.y() != point_cells.y()) gradient.y() = 0;
+  return value;
 }
 
 }  // namespace cornerstone

@@ -13,8 +13,7 @@ constexpr double kMaxBuckets = 5e7;
 
 }  // namespace
 
-EdgeIndex::EdgeIndex(const std::vector<EdgePoint>& edges, double bucket_m)
-    : edges_(edges), bucket_m_(bucket_m) {
+EdgeIndex::EdgeIndex(const std::vector<EdgePoint>& edges, double bucket_m) : per_bucket_(1 / bucket_m) {
   if (edges.empty()) return;
   if (!(bucket_m > 0)) throw std::invalid_argument("EdgeIndex: bucket_m must be positive");
   Eigen::Vector2d low = edges.front().position_m, high = low;
@@ -37,24 +36,20 @@ EdgeIndex::EdgeIndex(const std::vector<EdgePoint>& edges, double bucket_m)
   }
   for (std::size_t b = 1; b < starts_.size(); ++b) starts_[b] += starts_[b - 1];
   std::vector<int> next(starts_.begin(), starts_.end() - 1);
-  order_.resize(edges.size());
+  edges_.resize(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i)
-    order_[static_cast<std::size_t>(next[static_cast<std::size_t>(bucket_of[i])]++)] = static_cast<int>(i);
+    edges_[static_cast<std::size_t>(next[static_cast<std::size_t>(bucket_of[i])]++)] = edges[i];
 }
 
-int EdgeIndex::bucket(double offset_m) const {
-  return static_cast<int>(std::floor(std::clamp(offset_m / bucket_m_, -2.0, 1e9)));
-}
-
-int EdgeIndex::nearest(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal, double radius_m) const {
-  int best = -1;
+const EdgePoint* EdgeIndex::nearest(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal,
+                                    double radius_m) const {
+  const EdgePoint* best = nullptr;
   double best_squared = radius_m * radius_m;
-  forEachNear(point_m, [&](int i) {
-    const EdgePoint& edge = edges_[static_cast<std::size_t>(i)];
+  forEachNear(point_m, radius_m, [&](const EdgePoint& edge) {
     const double squared = (edge.position_m - point_m).squaredNorm();
     if (squared <= best_squared && edge.normal.dot(normal) > kSameSideCosine) {
       best_squared = squared;
-      best = i;
+      best = &edge;
     }
   });
   return best;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
+#include <cstdint>
+#include <cstring>
+#include <opencv2/core.hpp>
 
 #include "cornerstone/landmarks/edge_index.h"
 
@@ -14,52 +16,90 @@ constexpr std::array<Cell, 4> kNeighbours{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 constexpr int kNormalRadiusCells = 3;     // sees past one-cell walls and staircases
 constexpr double kSameWallCosine = 0.80;  // 37 degrees: one wall's cells, not the next wall's
 
-// Certain cells hand their state to uncertain neighbours that lean the same way, step by step.
-void growCertain(const GridMap& map, cv::Mat1b& states, std::deque<Cell>& front) {
+// A cell that leans towards occupied or free without being certain takes the state of a certain neighbour
+// that leans the same way, step by step. `front`: certain cells beside such cells.
+void growCertain(const cv::Mat1f& occupied, cv::Mat1b& states, std::vector<Cell>& front) {
   while (!front.empty()) {
-    const Cell cell = front.front();
-    front.pop_front();
+    const Cell cell = front.back();
+    front.pop_back();
     const unsigned char state = states(cell.row, cell.col);
     for (const Cell step : kNeighbours) {
-      const Cell next{cell.col + step.col, cell.row + step.row};
-      if (!map.geometry.contains(next) || states(next.row, next.col) != kUnknownCell) continue;
-      const float probability = map.occupied(next.row, next.col);
+      const int col = cell.col + step.col, row = cell.row + step.row;
+      if (col < 0 || row < 0 || col >= states.cols || row >= states.rows) continue;
+      if (states(row, col) != kUnknownCell) continue;
+      const float probability = occupied(row, col);
       if (state == kOccupiedCell ? probability > kUnseen : probability < kUnseen) {
-        states(next.row, next.col) = state;
-        front.push_back(next);
+        states(row, col) = state;
+        front.push_back({col, row});
       }
     }
   }
 }
 
-// Unit vector towards free space around a cell; zero where free and occupied balance.
-Eigen::Vector2d towardsFree(const cv::Mat1b& states, Cell cell) {
-  static constexpr std::array<int, 3> kWeight{0, 1, -1};  // by CellState
-  const int first = std::max(cell.col - kNormalRadiusCells, 0);
-  const int last = std::min(cell.col + kNormalRadiusCells, states.cols - 1);
-  int x = 0, y = 0;
-  for (int r = std::max(cell.row - kNormalRadiusCells, 0);
-       r <= std::min(cell.row + kNormalRadiusCells, states.rows - 1); ++r) {
-    const unsigned char* row = states[r];
-    int in_row = 0;
-    for (int c = first; c <= last; ++c) {
-      const int weight = kWeight[row[c]];
-      x += weight * (c - cell.col);
-      in_row += weight;
+std::vector<Cell> certainBesideUncertain(const cv::Mat1f& occupied, const cv::Mat1b& states) {
+  std::vector<Cell> front;
+  for (int row = 0; row < states.rows; ++row) {
+    for (int col = 0; col < states.cols; ++col) {
+      if (states(row, col) != kUnknownCell || occupied(row, col) == kUnseen) continue;
+      for (const Cell step : kNeighbours) {
+        const int c = col + step.col, r = row + step.row;
+        if (c < 0 || r < 0 || c >= states.cols || r >= states.rows) continue;
+        if (states(r, c) != kUnknownCell) front.push_back({c, r});
+      }
     }
-    y += in_row * (r - cell.row);
   }
-  const Eigen::Vector2d sum(x, y);
-  return x != 0 || y != 0 ? sum.normalized() : sum;
+  return front;
+}
+
+// Sums over a square of cells, free ones counted +1 and occupied ones -1: seven cells of a row at a time, as
+// the bytes of a word. The highest byte of a product is the sum of the bytes, each times the factor's byte
+// opposite to it.
+class FreeSide {
+ public:
+  explicit FreeSide(const cv::Mat1b& states) {
+    cv::copyMakeBorder(states, padded_, kNormalRadiusCells, kNormalRadiusCells, kNormalRadiusCells,
+                       kNormalRadiusCells + 1, cv::BORDER_CONSTANT, cv::Scalar(kUnknownCell));
+  }
+
+  // Unit vector towards free space around a cell; zero where free and occupied balance.
+  Eigen::Vector2d around(Cell cell) const {
+    int x = 0, y = 0;
+    for (int r = 0; r <= 2 * kNormalRadiusCells; ++r) {
+      std::uint64_t cells = 0;
+      std::memcpy(&cells, padded_[cell.row + r] + cell.col, sizeof(cells));
+      const std::uint64_t free = cells & kSevenOnes, occupied = cells >> 1 & kSevenOnes;
+      const int balance = top(free * kOnes) - top(occupied * kOnes);
+      x += top(free * kColumns) - top(occupied * kColumns) - kNormalRadiusCells * balance;
+      y += balance * (r - kNormalRadiusCells);
+    }
+    const Eigen::Vector2d sum(x, y);
+    return x != 0 || y != 0 ? sum.normalized() : sum;
+  }
+
+ private:
+  static_assert(kNormalRadiusCells == 3, "seven cells and a spare one fill a word");
+  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the first cell is the lowest byte");
+  static constexpr std::uint64_t kOnes = 0x0101010101010101, kSevenOnes = 0x0001010101010101;
+  static constexpr std::uint64_t kColumns = 0x0001020304050600;
+  static int top(std::uint64_t product) { return static_cast<int>(product >> 56); }
+
+  cv::Mat1b padded_;
+};
+
+// The first occupied cell of a row from a column on; the row's end: none.
+int nextOccupied(const cv::Mat1b& states, int row, int col) {
+  const unsigned char* const first = states[row];
+  const void* found = std::memchr(first + col, kOccupiedCell, static_cast<std::size_t>(states.cols - col));
+  return found == nullptr ? states.cols : static_cast<int>(static_cast<const unsigned char*>(found) - first);
 }
 
 // One edge for each face between an occupied and a free cell, where the probability crosses one half.
 std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
+  const FreeSide free_side(states);
   std::vector<EdgePoint> faces;
   for (int row = 0; row < states.rows; ++row) {
-    const unsigned char* state = states[row];
-    for (int col = 0; col < states.cols; ++col) {
-      if (state[col] != kOccupiedCell) continue;
+    for (int col = nextOccupied(states, row, 0); col < states.cols;
+         col = nextOccupied(states, row, col + 1)) {
       for (const Cell step : kNeighbours) {
         const Cell beside{col + step.col, row + step.row};
         if (!map.geometry.contains(beside) || states(beside.row, beside.col) != kFreeCell) continue;
@@ -67,7 +107,7 @@ std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
         const double here = map.occupied(row, col), there = map.occupied(beside.row, beside.col);
         const double share = std::clamp((here - kUnseen) / (here - there), 0.0, 1.0);
         // Seen from the free side: on a thin wall each face has its own free space.
-        const Eigen::Vector2d normal = towardsFree(states, beside) + outward;
+        const Eigen::Vector2d normal = free_side.around(beside) + outward;
         const double length = normal.norm();
         faces.push_back({map.geometry.toMetres(Eigen::Vector2d(col, row) + share * outward),
                          length > 0.1 ? Eigen::Vector2d(normal / length) : outward});
@@ -81,20 +121,29 @@ std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
 EdgePoint onLocalLine(const EdgePoint& edge, const EdgeIndex& index, double radius_m) {
   double count = 0;
   Eigen::Vector2d sum(0, 0);
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  index.forEachNear(edge.position_m, [&](int i) {
-    const EdgePoint& other = index.edges()[static_cast<std::size_t>(i)];
+  double xx = 0, xy = 0, yy = 0;
+  index.forEachNear(edge.position_m, radius_m, [&](const EdgePoint& other) {
     const Eigen::Vector2d offset = other.position_m - edge.position_m;
-    if (offset.squaredNorm() > radius_m * radius_m || other.normal.dot(edge.normal) < kSameWallCosine) return;
-    ++count;
-    sum += offset;
-    squares += offset * offset.transpose();
+    // A factor, not a branch: no processor foretells which neighbours count.
+    const double counts = static_cast<int>(offset.squaredNorm() <= radius_m * radius_m) &
+                          static_cast<int>(other.normal.dot(edge.normal) >= kSameWallCosine);
+    const Eigen::Vector2d counted = counts * offset;
+    count += counts;
+    sum += counted;
+    xx += counted.x() * offset.x();
+    xy += counted.x() * offset.y();
+    yy += counted.y() * offset.y();
   });
   if (count < 3) return edge;
   const Eigen::Vector2d mean = sum / count;
-  const Eigen::Matrix2d spread = squares / count - mean * mean.transpose();
-  const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));  // of the line
-  Eigen::Vector2d normal(-std::sin(angle), std::cos(angle));
+  // The line's direction is half the angle of (xx - yy, 2 xy); the normal is across it.
+  const Eigen::Vector2d doubled((xx - yy) / count - mean.x() * mean.x() + mean.y() * mean.y(),
+                                2 * (xy / count - mean.x() * mean.y()));
+  const double length = doubled.norm();
+  if (length <= 0) return edge;
+  const double along_x = std::sqrt(std::max(0.5 + 0.5 * doubled.x() / length, 0.0));
+  const double along_y = std::sqrt(std::max(0.5 - 0.5 * doubled.x() / length, 0.0));
+  Eigen::Vector2d normal(doubled.y() < 0 ? along_y : -along_y, along_x);
   if (normal.dot(edge.normal) < 0) normal = -normal;
   if (normal.dot(edge.normal) < kSameWallCosine) return edge;  // a blob, not a line
   return {edge.position_m + mean.dot(normal) * normal, normal};
@@ -109,35 +158,34 @@ void describe(ParamVisitor& visitor, EdgeParams& params) {
 }
 
 cv::Mat1b cellStates(const GridMap& map, const EdgeParams& params) {
-  cv::Mat1b states(map.occupied.size(), static_cast<unsigned char>(kUnknownCell));
-  const float occupied = static_cast<float>(params.occupied_above),
-              free = static_cast<float>(params.free_below);
-  bool uncertain = false;
+  cv::Mat1b states(map.occupied.size());
+  const auto occupied = static_cast<float>(params.occupied_above),
+             free = static_cast<float>(params.free_below);
+  int uncertain = 0;
   for (int row = 0; row < states.rows; ++row) {
     const float* from = map.occupied[row];
     unsigned char* to = states[row];
+    int in_row = 0;
     for (int col = 0; col < states.cols; ++col) {
       const float probability = from[col];
-      to[col] = probability > occupied ? kOccupiedCell : probability < free ? kFreeCell : kUnknownCell;
-      uncertain |= to[col] == kUnknownCell && probability != kUnseen;
+      const int is_occupied = probability > occupied, is_free = probability < free;
+      to[col] = static_cast<unsigned char>(kOccupiedCell * is_occupied + kFreeCell * is_free);
+      in_row += (probability != kUnseen) & !is_occupied & !is_free;
     }
+    uncertain += in_row;
   }
-  if (!uncertain) return states;
-  std::deque<Cell> front;
-  for (int row = 0; row < states.rows; ++row)
-    for (int col = 0; col < states.cols; ++col)
-      if (states(row, col) != kUnknownCell) front.push_back({col, row});
-  growCertain(map, states, front);
+  if (uncertain == 0) return states;
+  std::vector<Cell> front = certainBesideUncertain(map.occupied, states);
+  growCertain(map.occupied, states, front);
   return states;
 }
 
 std::vector<EdgePoint> findEdges(const GridMap& map, const cv::Mat1b& states, const EdgeParams& params) {
-  const std::vector<EdgePoint> faces = findFaces(map, states);
   const double radius_m = std::max(params.smoothing_m, 2 * map.geometry.resolution_m);
-  const EdgeIndex index(faces, radius_m);
+  const EdgeIndex index(findFaces(map, states), 0.5 * radius_m);
   std::vector<EdgePoint> edges;
-  edges.reserve(faces.size());
-  for (const EdgePoint& face : faces) edges.push_back(onLocalLine(face, index, radius_m));
+  edges.reserve(index.edges().size());
+  for (const EdgePoint& face : index.edges()) edges.push_back(onLocalLine(face, index, radius_m));
   return edges;
 }
 

@@ -20,6 +20,7 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.group("grid", [&] { describe(visitor, params.grid); });
   visitor.group("fit", [&] { describe(visitor, params.fit); });
   visitor.group("odometry", [&] { describe(visitor, params.odometry); });
+  visitor.group("graph", [&] { describe(visitor, params.graph); });
   visitor.field("fit_scans", params.fit_scans);
   visitor.field("max_contradictions", params.max_contradictions);
 }
@@ -37,7 +38,8 @@ void requireSane(const Pose2& odom_from_base) {
 
 }  // namespace
 
-Mapper::Mapper(const MapperParams& params) : params_(params), grid_(params.grid), filter_(params.odometry) {
+Mapper::Mapper(const MapperParams& params)
+    : params_(params), grid_(params.grid), filter_(params.odometry), graph_(params.graph, params.odometry) {
   requireValid(params.fit);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
@@ -56,8 +58,7 @@ void Mapper::predict(const Pose2& odom_from_base) {
 
 LookMotion Mapper::motion() const {
   if (!last_inserted_) return kFirstLook;
-  const Pose2 moved = last_inserted_->inverse() * filter_.pose().map_from_base;
-  return {moved.translation().norm(), std::abs(moved.yaw_rad)};
+  return motionBetween(*last_inserted_, filter_.pose().map_from_base);
 }
 
 // Of the whole look: at the distance of its middle beam.
@@ -71,30 +72,80 @@ double Mapper::newShare(const RangeScan& scan) const {
   return grid_.newShare(*middle, motion());
 }
 
-MapperUpdate Mapper::update(const RangeScan& scan, const Pose2& odom_from_base) {
+MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   requireSane(odom_from_base);
   predict(odom_from_base);
+  const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
   if (params_.fit_scans) fit = fitScan(scan, grid_, {filter_.pose(), newShare(scan)}, params_.fit);
   if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
   contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
-  const Pose2 map_from_base = filter_.pose().map_from_base;
-  map_from_odom_ = map_from_base * odom_from_base.inverse();
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
   const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
+  const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
+  if (remembers) remember(raw, odom_from_base);
   if (insert) {
-    grid_.insert(scan, map_from_base, motion());
-    last_inserted_ = map_from_base;
+    grid_.insert(scan, filter_.pose().map_from_base, motion());
+    last_inserted_ = filter_.pose().map_from_base;
   }
+  if (remembers) straighten();
+  map_from_odom_ = filter_.pose().map_from_base * odom_from_base.inverse();
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
+}
+
+void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
+  if (graph_.frameDue(odom_from_base)) {
+    filter_.correct(graph_.addFrame(scan, odom_from_base, filter_.pose()));
+  } else {
+    graph_.addLook(scan, odom_from_base);
+  }
+}
+
+void Mapper::straighten() {
+  if (redraw_) {
+    redraw();
+  } else if (graph_.solveDue()) {
+    GraphSolution solution = graph_.solve();
+    if (movesTheMap(solution)) redraw_.emplace(params_.grid, std::move(solution));
+  }
+}
+
+bool Mapper::movesTheMap(const GraphSolution& solution) const {
+  const double limit_m = params_.graph.redraw_shift_m;
+  const ScanCalibration &before = graph_.calibration(), &now = solution.calibration;
+  const Eigen::Vector2d change(now.offset_per_m - before.offset_per_m, now.slope_per_m - before.slope_per_m);
+  const double far_m = params_.graph.match_distance_m;
+  if (change.norm() * far_m * far_m > limit_m) return true;
+  for (std::size_t i = 0; i < solution.map_from_base.size(); ++i) {
+    const Pose2 moved = graph_.frames()[i].map_from_base.inverse() * solution.map_from_base[i];
+    if (moved.translation().norm() + far_m * std::abs(moved.yaw_rad) > limit_m) return true;
+  }
+  return false;
+}
+
+void Mapper::redraw() {
+  redraw_->goOn(graph_.frames(), params_.graph.redraw_looks_per_scan);
+  if (!redraw_->finished(graph_.frames())) return;
+  const GraphSolution& solution = redraw_->solution();
+  const Pose2 correction = correctionOf(solution, graph_.frames());
+  filter_.moveBy(correction, solution.rates);
+  last_inserted_ = correction * *last_inserted_;
+  graph_.adopt(solution);
+  grid_.becomeRedrawn(redraw_->takeGrid());
+  redraw_.reset();
+  ++redraws_;
 }
 
 void Mapper::reset() {
   grid_.clear();
   filter_ = OdometryFilter(params_.odometry);
+  graph_ = FrameGraph(params_.graph, params_.odometry);
+  redraw_.reset();
+  redraws_ = 0;
+  loaded_ = false;
   map_from_odom_ = {};
   last_odom_.reset();
   start_.reset();
@@ -110,6 +161,7 @@ void Mapper::load(const GridMap& map, const Pose2& map_from_base) {
   reset();
   grid_ = std::move(loaded);
   start_ = map_from_base;
+  loaded_ = true;
 }
 
 }  // namespace cornerstone

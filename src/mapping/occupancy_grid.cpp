@@ -101,6 +101,11 @@ void OccupancyGrid::insert(const RangeScan& scan, const Pose2& map_from_base, co
   for (const SurfaceHit& hit : wedge.hits()) addHit(hit);
 }
 
+LookMotion motionBetween(const Pose2& map_from_before, const Pose2& map_from_now) {
+  const Pose2 moved = map_from_before.inverse() * map_from_now;
+  return {moved.translation().norm(), std::abs(moved.yaw_rad)};
+}
+
 double OccupancyGrid::newShare(double range_m, const LookMotion& motion) const {
   const double whole_m = params_.new_look_ratio * std::max(range_m, params_.resolution_m);
   return std::clamp(motion.moved_m / whole_m + motion.turned_rad / params_.new_look_rad,
@@ -110,6 +115,14 @@ double OccupancyGrid::newShare(double range_m, const LookMotion& motion) const {
 void OccupancyGrid::clear() {
   tiles_.clear();
   ++version_;
+}
+
+void OccupancyGrid::becomeRedrawn(OccupancyGrid&& redrawn) {
+  for (const auto& [index, tile] : tiles_)
+    redrawn.tileFor(index);  // what is no longer seen goes out as unseen
+  tiles_ = std::move(redrawn.tiles_);
+  ++version_;
+  for (auto& [index, tile] : tiles_) tile.version = version_;
 }
 
 void OccupancyGrid::load(const GridMap& map) {

@@ -76,6 +76,14 @@ void OdometryFilter::step(const Pose2& odom_step) {
   map_from_base_ = map_from_base_ * step;
 }
 
+void OdometryFilter::moveBy(const Pose2& correction, const Eigen::Vector3d& rates) {
+  Matrix6d turn = Matrix6d::Identity();
+  turn.topLeftCorner<2, 2>() = correction.rotation();
+  covariance_ = turn * covariance_ * turn.transpose();
+  map_from_base_ = correction * map_from_base_;
+  rates_ = rates;
+}
+
 // Conditioning of a joint Gaussian on a new marginal of its pose.
 void OdometryFilter::correct(const PoseEstimate& posterior) {
   const Eigen::Matrix3d prior = covariance_.topLeftCorner<3, 3>();

@@ -32,6 +32,12 @@ double leadSigmas(const PoseScore& best, const PoseScore& rival, double square_m
   return std::max(lead_m, 0.0) / std::sqrt(kNoise_m2 + kPiece_m * (best.agree + rival.agree) * square_m);
 }
 
+std::string text(double number, int decimals) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(decimals) << number;
+  return out.str();
+}
+
 double neededAgreement_m(const PoseEvidence& evidence, const RegistrationParams& params) {
   if (evidence.with_prior) return params.min_agreeing_with_prior_m;
   const double of_small_map_m =
@@ -67,21 +73,27 @@ double probabilityRight(const PoseEvidence& evidence) {
 }
 
 std::optional<std::string> reasonToRefuse(const PoseEvidence& evidence, const RegistrationParams& params) {
-  if (evidence.agreeing_m < neededAgreement_m(evidence, params)) return "too little wall agrees";
-  if (evidence.contradicting_m >
-      params.max_contradicting_share * (evidence.agreeing_m + evidence.contradicting_m))
-    return "too much of the walls contradicts";
-  if (evidence.second_best > kTie) return "another pose fits as well where the maps may bend";
-  if (evidence.clear_rival > params.max_clear_rival) return "a different pose is free of contradictions, too";
-  if (evidence.spread < params.min_spread) return "the walls leave one direction open";
+  const double judged_m = evidence.agreeing_m + evidence.contradicting_m;
+  const double needed_m = neededAgreement_m(evidence, params);
+  if (evidence.agreeing_m < needed_m)
+    return "too little wall agrees: " + text(evidence.agreeing_m, 1) + " m of " + text(needed_m, 1) +
+           " m needed";
+  if (evidence.contradicting_m > params.max_contradicting_share * judged_m)
+    return "too much wall contradicts: " + text(evidence.contradicting_m, 1) + " m of the " +
+           text(judged_m, 1) + " m that both maps can judge";
+  if (evidence.second_best > kTie)
+    return "another pose fits as well where the maps may bend: " + text(evidence.second_best, 2) +
+           " of the best one's value";
+  if (evidence.clear_rival > params.max_clear_rival)
+    return "a different pose is free of contradictions, too: " + text(evidence.clear_rival, 2) +
+           " of the best one's value";
+  if (evidence.spread < params.min_spread)
+    return "the walls leave one direction open: it holds " + text(evidence.spread, 3) + " of the other one";
   if (probabilityRight(evidence) >= params.min_probability) return std::nullopt;
-  std::ostringstream reason;
-  reason << std::fixed << std::setprecision(1)
-         << (evidence.lead_sigmas < kSmallLead ? "another pose fits nearly as well"
-                                               : "the maps contradict each other")
-         << " (" << evidence.agreeing_m << " m of wall agree, " << evidence.contradicting_m
-         << " m contradict, ahead of the next pose by " << evidence.lead_sigmas << " sigmas)";
-  return reason.str();
+  return (evidence.lead_sigmas < kSmallLead ? "another pose fits nearly as well: ahead of it by "
+                                            : "the lead does not outweigh the contradictions: ahead by ") +
+         text(evidence.lead_sigmas, 1) + " sigmas, " + text(evidence.agreeing_m, 1) + " m of wall agree, " +
+         text(evidence.contradicting_m, 1) + " m contradict";
 }
 
 }  // namespace cornerstone

@@ -34,17 +34,18 @@ struct Pairing {
   const EdgeIndex& reference;
   const EdgeIndex& current;
   Eigen::Vector2d pivot_m;
-  std::size_t max_edges;
 
-  // Every edge of each map with the nearest one of the other under a pose.
-  std::vector<LinePair> under(const Pose2& reference_from_current, double reach_m) const {
+  // Edges of each map with the nearest one of the other under a pose.
+  std::vector<LinePair> under(const Pose2& reference_from_current, double reach_m,
+                              std::size_t max_edges) const {
     std::vector<LinePair> pairs;
+    pairs.reserve(2 * max_edges);
     const Eigen::Matrix2d turn = reference_from_current.rotation();
-    forEachPartner({current, reference, reference_from_current}, reach_m,
+    forEachPartner({current, reference, reference_from_current, reach_m, max_edges},
                    [&](const EdgePoint& here, const EdgePoint& there, const Eigen::Vector2d& normal) {
                      pairs.push_back({here.position_m - pivot_m, there.position_m, normal, 1});
                    });
-    forEachPartner({reference, current, reference_from_current.inverse()}, reach_m,
+    forEachPartner({reference, current, reference_from_current.inverse(), reach_m, max_edges},
                    [&](const EdgePoint& there, const EdgePoint& here, const Eigen::Vector2d& normal) {
                      pairs.push_back({here.position_m - pivot_m, there.position_m, turn * normal, 1});
                    });
@@ -56,19 +57,19 @@ struct Pairing {
     const EdgeIndex& from;
     const EdgeIndex& to;
     Pose2 to_from_from;
+    double reach_m;
+    std::size_t max_edges;
   };
   template <typename Use>  // of an edge, its partner, and the normal of their line in the partner's map
-  void forEachPartner(const Way& way, double reach_m, const Use& use) const {
-    const auto& [from, to, to_from_from] = way;
+  void forEachPartner(const Way& way, const Use& use) const {
+    const auto& [from, to, to_from_from, reach_m, max_edges] = way;
     const Eigen::Matrix2d turn = to_from_from.rotation();
     const std::size_t step = (from.edges().size() + max_edges - 1) / max_edges;
     for (std::size_t i = 0; i < from.edges().size(); i += step) {
       const EdgePoint& edge = from.edges()[i];
       const Eigen::Vector2d normal = turn * edge.normal;
-      const int partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
-      if (partner < 0) continue;
-      const EdgePoint& other = to.edges()[static_cast<std::size_t>(partner)];
-      use(edge, other, (normal + other.normal).normalized());
+      const EdgePoint* partner = to.nearest(to_from_from * edge.position_m, normal, reach_m);
+      if (partner != nullptr) use(edge, *partner, (normal + partner->normal).normalized());
     }
   }
 };
@@ -154,7 +155,7 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
     pivot_m += edge.position_m / static_cast<double>(current.edges().size());
   Focus focus{std::nullopt, options.focus_radius_m};
   if (options.focus_in_current_m) focus.at_m = *options.focus_in_current_m - pivot_m;
-  const Pairing pairing{reference, current, pivot_m, options.max_edges};
+  const Pairing pairing{reference, current, pivot_m};
   const Eigen::Vector2d start = guess * pivot_m;
   Eigen::Vector3d x(start.x(), start.y(), guess.yaw_rad);
   std::vector<LinePair> pairs;
@@ -162,13 +163,15 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
     const double share = options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 1;
     const double reach_m =
         options.first_reach_m * std::pow(options.last_reach_m / options.first_reach_m, share);
-    pairs = pairing.under(poseAt(x, pivot_m), reach_m);
+    // The first rounds find the place, the last two its millimetres.
+    const std::size_t edges = round + 2 < options.rounds ? options.max_edges / 4 : options.max_edges;
+    pairs = pairing.under(poseAt(x, pivot_m), reach_m, edges);
     if (pairs.size() < kMinPartners) return std::nullopt;
     weigh(pairs, x, focus);
     const LineCost cost(pairs);
     const Adapter adapter(cost);
     ceres::TinySolver<Adapter> solver;
-    solver.options.max_num_iterations = 3;
+    solver.options.max_num_iterations = 2;  // one step: partners are chosen anew after it
     solver.Solve(adapter, &x);
     if (!x.allFinite()) return std::nullopt;
   }

@@ -8,6 +8,8 @@
 namespace cornerstone {
 namespace {
 
+constexpr double kAtRest = 0.9;  // of the evidence there can be: nothing to gain by giving way
+
 using Tile = std::vector<EdgeSample>;  // already carried into the grid's frame
 
 struct Counts {
@@ -29,6 +31,7 @@ Counts countOn(const EvidenceGrid& grid, const Tile& tile, const Eigen::Vector2f
 Counts settle(const EvidenceGrid& grid, const Tile& tile, const ElasticOptions& options) {
   Eigen::Vector2f at(0, 0);
   Counts best = countOn(grid, tile, at);
+  if (best.value() > kAtRest * kFullEvidence * static_cast<double>(tile.size())) return best;
   auto step = static_cast<float>(options.step_m);
   for (int halving = 0; halving < 2; ++halving, step /= 2) {
     const Eigen::Vector2f centre = at;

@@ -1,158 +1,116 @@
 #include "cornerstone/registration/evidence_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
-#include <random>
+#include <utility>
+
+#include "cornerstone/registration/thin_edges.h"
 
 namespace cornerstone {
 namespace {
 
 constexpr double kFreeShare = 0.5;  // of a square's cells: surely free above it, if none is occupied
+constexpr int kPlaces = 4;  // of an edge within a square, in each direction: right to an eighth of a square
 
-int direction256(const Eigen::Vector2d& normal) {
-  return static_cast<int>(std::lround(std::atan2(normal.y(), normal.x()) * 128 / M_PI)) & 255;
-}
-int direction8(const Eigen::Vector2d& normal) { return ((direction256(normal) + 16) & 255) >> 5; }
+// What edges of each direction, at each place within a square, make the squares around them say.
+class Stamps {
+ public:
+  explicit Stamps(float reach_squares)
+      : radius(static_cast<int>(std::ceil(reach_squares))),
+        width(2 * radius + 1),
+        evidence_(static_cast<std::size_t>(kPlaces * kPlaces * kEvidenceDirections * width * rowBytes())) {
+    std::uint8_t* to = evidence_.data();
+    for (int y = 0; y < kPlaces; ++y)
+      for (int x = 0; x < kPlaces; ++x)
+        for (int direction = 0; direction < kEvidenceDirections; ++direction)
+          for (int row = -radius; row <= radius; ++row)
+            for (int col = -radius; col <= radius; ++col, to += kEvidenceDirections) {
+              const float dx = static_cast<float>(col) + 0.5f - (static_cast<float>(x) + 0.5f) / kPlaces;
+              const float dy = static_cast<float>(row) + 0.5f - (static_cast<float>(y) + 0.5f) / kPlaces;
+              write(1 - std::sqrt(dx * dx + dy * dy) / (reach_squares + 0.5f), direction, to);
+            }
+  }
+
+  int rowBytes() const { return width * kEvidenceDirections; }
+  // Rows of squares, each of `width` squares of 8 directions, around the square of an edge.
+  const std::uint8_t* of(const Eigen::Vector2f& place, int direction) const {
+    const int x = std::min(static_cast<int>(place.x() * kPlaces), kPlaces - 1);
+    const int y = std::min(static_cast<int>(place.y() * kPlaces), kPlaces - 1);
+    return &evidence_[static_cast<std::size_t>(((y * kPlaces + x) * kEvidenceDirections + direction) * width *
+                                               rowBytes())];
+  }
+
+  const int radius;
+  const int width;
+
+ private:
+  static void write(float share, int direction, std::uint8_t* to) {
+    if (share <= 0) return;
+    const auto full = static_cast<int>(std::min(1.5f * share, 1.0f) * kFullEvidence);
+    const int beside = full * 7 / 10;  // normals 45 degrees apart: noise, round walls
+    // An edge of another direction is no agreement, but near any edge nothing is surely free.
+    std::fill_n(to, kEvidenceDirections, static_cast<std::uint8_t>(kFullEvidence));
+    to[direction] = static_cast<std::uint8_t>(kFullEvidence + full);
+    for (const int turn : {1, kEvidenceDirections - 1})
+      to[(direction + turn) % kEvidenceDirections] = static_cast<std::uint8_t>(kFullEvidence + beside);
+  }
+
+  std::vector<std::uint8_t> evidence_;
+};
 
 }  // namespace
 
-EvidenceGrid::EvidenceGrid(const GridMap& map, const cv::Mat1b& states, const std::vector<EdgePoint>& edges,
-                           double cell_m, double reach_m)
-    : origin_m_(static_cast<float>(map.geometry.origin_x_m), static_cast<float>(map.geometry.origin_y_m)),
-      per_cell_(static_cast<float>(1 / cell_m)),
-      cols_(std::max(static_cast<int>(std::ceil(map.geometry.cols * map.geometry.resolution_m / cell_m)), 1)),
-      rows_(std::max(static_cast<int>(std::ceil(map.geometry.rows * map.geometry.resolution_m / cell_m)), 1)),
-      table_(static_cast<std::size_t>(cols_ * rows_ * kEvidenceDirections)),
-      known_(static_cast<std::size_t>(cols_ * rows_)) {
-  markFree(map, states);
-  for (const EdgePoint& edge : edges) addEdge(edge, static_cast<float>(reach_m / cell_m));
+EvidenceGrid::EvidenceGrid(SquareCounts counts, const std::vector<EdgePoint>& edges, double reach_m)
+    : counts_(std::move(counts)),
+      per_square_(static_cast<float>(1 / counts_.square_m)),
+      table_(counts_.free.size() * kEvidenceDirections, static_cast<std::uint8_t>(kFullEvidence)) {
+  markFree();
+  addEdges(edges, static_cast<float>(reach_m / counts_.square_m));
 }
 
-void EvidenceGrid::markFree(const GridMap& map, const cv::Mat1b& states) {
-  const double ratio = map.geometry.resolution_m * per_cell_;
-  std::vector<int> column(static_cast<std::size_t>(map.geometry.cols));
-  for (int c = 0; c < map.geometry.cols; ++c)
-    column[static_cast<std::size_t>(c)] = std::min(static_cast<int>((c + 0.5) * ratio), cols_ - 1);
-  std::vector<int> free(known_.size()), occupied(known_.size());
-  for (int r = 0; r < map.geometry.rows; ++r) {
-    const int base = std::min(static_cast<int>((r + 0.5) * ratio), rows_ - 1) * cols_;
-    const unsigned char* state = states[r];
-    for (int c = 0; c < map.geometry.cols; ++c) {
-      if (state[c] == kUnknownCell) continue;
-      ++(state[c] == kFreeCell
-             ? free
-             : occupied)[static_cast<std::size_t>(base + column[static_cast<std::size_t>(c)])];
-    }
-  }
+void EvidenceGrid::markFree() {
   // Cells larger than the squares leave squares without a cell's centre: one known cell is enough there.
-  const double enough = std::max(kFreeShare / (ratio * ratio), 1.0);
-  for (std::size_t s = 0; s < known_.size(); ++s) {
-    known_[s] = static_cast<std::uint8_t>(std::min(free[s] + occupied[s], 255));
-    if (occupied[s] == 0 && free[s] >= enough)
-      std::fill_n(table_.begin() + static_cast<std::ptrdiff_t>(s * kEvidenceDirections), kEvidenceDirections,
-                  static_cast<std::int8_t>(-kFullEvidence));
-  }
+  const double enough = std::max(kFreeShare * counts_.cells_per_square, 1.0);
+  for (std::size_t s = 0; s < counts_.free.size(); ++s)
+    if (counts_.occupied[s] == 0 && counts_.free[s] >= enough)
+      std::fill_n(&table_[s * kEvidenceDirections], kEvidenceDirections, std::uint8_t{0});
 }
 
-void EvidenceGrid::addEdge(const EdgePoint& edge, float reach_cells) {
-  const Eigen::Vector2f at = (edge.position_m.cast<float>() - origin_m_) * per_cell_;
-  const int direction = direction8(edge.normal);
-  const int first_row = std::max(static_cast<int>(at.y() - reach_cells), 0);
-  const int last_row = std::min(static_cast<int>(at.y() + reach_cells), rows_ - 1);
-  const int first_col = std::max(static_cast<int>(at.x() - reach_cells), 0);
-  const int last_col = std::min(static_cast<int>(at.x() + reach_cells), cols_ - 1);
-  for (int r = first_row; r <= last_row; ++r) {
-    for (int c = first_col; c <= last_col; ++c) {
-      const float dx = static_cast<float>(c) + 0.5f - at.x(), dy = static_cast<float>(r) + 0.5f - at.y();
-      const float share = 1 - std::sqrt(dx * dx + dy * dy) / (reach_cells + 0.5f);
-      if (share <= 0) continue;
-      const auto full = static_cast<std::int8_t>(std::min(1.5f * share, 1.0f) * kFullEvidence);
-      const auto beside =
-          static_cast<std::int8_t>(full * 7 / 10);  // normals 45 degrees apart: noise, round walls
-      std::int8_t* cell = &table_[static_cast<std::size_t>((r * cols_ + c) * kEvidenceDirections)];
-      // An edge of another direction is no agreement, but near any edge nothing is surely free.
-      for (int d = 0; d < kEvidenceDirections; ++d) cell[d] = std::max(cell[d], std::int8_t{0});
-      cell[direction] = std::max(cell[direction], full);
-      cell[(direction + 1) & 7] = std::max(cell[(direction + 1) & 7], beside);
-      cell[(direction + 7) & 7] = std::max(cell[(direction + 7) & 7], beside);
+void EvidenceGrid::addEdges(const std::vector<EdgePoint>& edges, float reach_squares) {
+  const Stamps stamps(reach_squares);
+  for (const EdgePoint& edge : edges) {
+    const Eigen::Vector2f at = (edge.position_m.cast<float>() - counts_.origin_m) * per_square_;
+    const int col = static_cast<int>(std::floor(at.x())), row = static_cast<int>(std::floor(at.y()));
+    const int left = std::max(col - stamps.radius, 0),
+              right = std::min(col + stamps.radius, counts_.cols - 1);
+    if (left > right) continue;
+    const Eigen::Vector2f place = at - Eigen::Vector2f(static_cast<float>(col), static_cast<float>(row));
+    const std::uint8_t* stamp =
+        stamps.of(place, directionOf8(edge.normal)) + (left - col + stamps.radius) * kEvidenceDirections;
+    const int bytes = (right - left + 1) * kEvidenceDirections;
+    for (int r = std::max(row - stamps.radius, 0); r <= std::min(row + stamps.radius, counts_.rows - 1);
+         ++r) {
+      std::uint8_t* to = &table_[static_cast<std::size_t>((r * counts_.cols + left) * kEvidenceDirections)];
+      const std::uint8_t* from = stamp + (r - row + stamps.radius) * stamps.rowBytes();
+      for (int i = 0; i < bytes; ++i) to[i] = std::max(to[i], from[i]);
     }
   }
-}
-
-bool EvidenceGrid::known(const Eigen::Vector2f& point_m) const {
-  const Eigen::Vector2f at = (point_m - origin_m_) * per_cell_;
-  if (!(at.x() >= 0 && at.y() >= 0 && at.x() < static_cast<float>(cols_) &&
-        at.y() < static_cast<float>(rows_)))
-    return false;
-  return known_[static_cast<std::size_t>(static_cast<int>(at.y()) * cols_ + static_cast<int>(at.x()))] > 0;
-}
-
-std::vector<Eigen::Vector2f> EvidenceGrid::knownSquares() const {
-  std::vector<Eigen::Vector2f> squares;
-  for (int r = 0; r < rows_; ++r)
-    for (int c = 0; c < cols_; ++c)
-      if (known_[static_cast<std::size_t>(r * cols_ + c)] > 0)
-        squares.push_back(origin_m_ +
-                          Eigen::Vector2f(static_cast<float>(c) + 0.5f, static_cast<float>(r) + 0.5f) /
-                              per_cell_);
-  return squares;
 }
 
 std::vector<Opinion> EvidenceGrid::opinions() const {
   std::vector<Opinion> opinions;
-  for (int r = 0; r < rows_; ++r) {
-    for (int c = 0; c < cols_; ++c) {
-      const std::int8_t* cell = &table_[static_cast<std::size_t>((r * cols_ + c) * kEvidenceDirections)];
-      const int best = *std::max_element(cell, cell + kEvidenceDirections);
+  for (int r = 0; r < counts_.rows; ++r) {
+    for (int c = 0; c < counts_.cols; ++c) {
+      const std::uint8_t* square =
+          &table_[static_cast<std::size_t>((r * counts_.cols + c) * kEvidenceDirections)];
+      const int best = *std::max_element(square, square + kEvidenceDirections) - kFullEvidence;
       if (best == 0) continue;
       const Eigen::Vector2f middle(static_cast<float>(c) + 0.5f, static_cast<float>(r) + 0.5f);
-      opinions.push_back({origin_m_ + middle / per_cell_, best});
+      opinions.push_back({counts_.origin_m + middle * static_cast<float>(counts_.square_m), best});
     }
   }
   return opinions;
-}
-
-std::vector<EdgePoint> thinEdges(const std::vector<EdgePoint>& edges, double cell_m) {
-  struct Keyed {
-    int row, col, direction;
-    std::size_t edge;
-    bool operator<(const Keyed& o) const {
-      return std::tie(row, col, direction, edge) < std::tie(o.row, o.col, o.direction, o.edge);
-    }
-  };
-  std::vector<Keyed> keyed;
-  keyed.reserve(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Eigen::Vector2d at = edges[i].position_m / cell_m;
-    keyed.push_back({static_cast<int>(std::floor(at.y())), static_cast<int>(std::floor(at.x())),
-                     direction8(edges[i].normal), i});
-  }
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<EdgePoint> thin;
-  for (std::size_t i = 0; i < keyed.size();) {
-    EdgePoint mean{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-    std::size_t j = i;
-    for (; j < keyed.size() && keyed[j].row == keyed[i].row && keyed[j].col == keyed[i].col &&
-           keyed[j].direction == keyed[i].direction;
-         ++j) {
-      mean.position_m += edges[keyed[j].edge].position_m;
-      mean.normal += edges[keyed[j].edge].normal;
-    }
-    thin.push_back({mean.position_m / static_cast<double>(j - i), mean.normal.normalized()});
-    i = j;
-  }
-  std::mt19937 order(1);
-  for (std::size_t i = thin.size(); i > 1; --i) std::swap(thin[i - 1], thin[order() % i]);
-  return thin;
-}
-
-std::vector<EdgeSample> samplesOf(const std::vector<EdgePoint>& edges) {
-  std::vector<EdgeSample> samples;
-  samples.reserve(edges.size());
-  for (const EdgePoint& edge : edges)
-    samples.push_back({edge.position_m.cast<float>(), direction256(edge.normal)});
-  return samples;
 }
 
 }  // namespace cornerstone

@@ -11,27 +11,32 @@ PoseScore scoreOn(const EvidenceGrid& grid, const std::vector<EdgeSample>& sampl
                   const Pose2& grid_from_samples, std::size_t max_samples) {
   const std::size_t count = std::min(samples.size(), max_samples);
   if (count == 0) return {};
-  const Eigen::Matrix2f rotation = grid_from_samples.rotation().cast<float>();
-  const Eigen::Vector2f shift = grid_from_samples.translation().cast<float>();
+  const Eigen::Matrix2f rotation = grid.squaresPerMetre() * grid_from_samples.rotation().cast<float>();
+  const Eigen::Vector2f shift =
+      grid.squaresPerMetre() * (grid_from_samples.translation().cast<float>() - grid.origin());
+  const float c = rotation(0, 0), s = rotation(1, 0), x = shift.x(), y = shift.y();
   const int turn = static_cast<int>(std::lround(grid_from_samples.yaw_rad * 128 / M_PI));
-  int agree = 0, contradict = 0;
+  int agree = 0, both = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const int evidence = grid.at(rotation * samples[i].position_m + shift, samples[i].direction_256 + turn);
-    (evidence > 0 ? agree : contradict) += evidence;
+    const EdgeSample& sample = samples[i];
+    const float px = sample.position_m.x(), py = sample.position_m.y();
+    const int evidence = grid.atSquare(c * px - s * py + x, s * px + c * py + y, sample.direction_256 + turn);
+    agree += std::max(evidence, 0);
+    both += evidence;
   }
   const double scale = static_cast<double>(samples.size()) / (static_cast<double>(count) * kFullEvidence);
-  return {agree * scale, -contradict * scale};
+  return {agree * scale, (agree - both) * scale};
 }
 
 }  // namespace
 
-PoseScore scorePose(const MapEvidence& reference, const MapEvidence& current,
-                    const Pose2& reference_from_current, ScoreLevel level, std::size_t max_samples) {
-  const bool coarse = level == ScoreLevel::kCoarse;
-  const PoseScore one = scoreOn(coarse ? reference.coarse : reference.fine, current.samples,
-                                reference_from_current, max_samples);
-  const PoseScore other = scoreOn(coarse ? current.coarse : current.fine, reference.samples,
-                                  reference_from_current.inverse(), max_samples);
+PoseScore scorePose(const EvidencePair& maps, const Pose2& reference_from_current, const Look& look) {
+  const auto& [there, here] = maps;
+  const bool coarse = look.level == ScoreLevel::kCoarse;
+  const PoseScore one =
+      scoreOn(coarse ? there.coarse : there.fine, here.samples, reference_from_current, look.max_samples);
+  const PoseScore other = scoreOn(coarse ? here.coarse : here.fine, there.samples,
+                                  reference_from_current.inverse(), look.max_samples);
   return {0.5 * (one.agree + other.agree), 0.5 * (one.contradict + other.contradict)};
 }
 

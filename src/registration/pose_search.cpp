@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cornerstone {
 namespace {
@@ -15,9 +16,11 @@ constexpr std::size_t kClimbed = 20;
 constexpr std::size_t kCoarseClimbSamples = 120;
 constexpr std::size_t kGlanceFineSamples = 150;
 constexpr std::size_t kFineClimbSamples = 300;
-constexpr std::size_t kFineSamples = 1000;
-constexpr std::size_t kKept = 8;  // different poses in the end
-constexpr double kSame_m = 0.3;   // poses this near climb to the same top
+constexpr std::size_t kFineSamples = 3000;
+constexpr int kTries = 4;          // at each size of step
+constexpr std::size_t kKept = 8;   // different poses in the end
+constexpr double kHopeless = 0.2;  // of the best value so far: no rival comes from there
+constexpr double kSame_m = 0.3;    // poses this near climb to the same top
 constexpr double kSame_rad = 3 * M_PI / 180;
 
 void sortBestFirst(std::vector<Hypothesis>& hypotheses) {
@@ -25,19 +28,32 @@ void sortBestFirst(std::vector<Hypothesis>& hypotheses) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.value > b.value; });
 }
 
-std::vector<Hypothesis> bestDifferent(const std::vector<Hypothesis>& sorted, const Eigen::Vector2d& middle_m,
-                                      double distance_m, double angle_rad, std::size_t count) {
+// The best ones, each apart from every better one.
+std::vector<Hypothesis> bestApart(const std::vector<Hypothesis>& sorted, const PoseDistance& distance,
+                                  std::size_t count) {
   std::vector<Hypothesis> kept;
   for (const Hypothesis& h : sorted) {
     if (kept.size() == count) break;
     if (std::all_of(kept.begin(), kept.end(), [&](const Hypothesis& better) {
-          return areDifferent(better.reference_from_current, h.reference_from_current, middle_m, distance_m,
-                              angle_rad);
+          return distance.apart(better.reference_from_current, h.reference_from_current);
         }))
       kept.push_back(h);
   }
   return kept;
 }
+
+// What a pose is worth at a look.
+struct Judge {
+  const EvidencePair& maps;
+  const RegistrationParams& params;
+
+  Hypothesis operator()(const Pose2& pose, const Look& look) const {
+    const PoseScore score = scorePose(maps, pose, look);
+    const double weight =
+        look.level == ScoreLevel::kCoarse ? params.coarse_contradiction : params.contradiction;
+    return {pose, score, score.agree - weight * score.contradict};
+  }
+};
 
 struct Steps {
   double distance_m;
@@ -47,90 +63,74 @@ struct Steps {
 
 // Walks uphill along the axes and the yaw about the current map's middle, with shrinking steps.
 struct Climb {
-  const MapEvidence& reference;
-  const MapEvidence& current;
-  ScoreLevel level;
-  std::size_t samples;
-  double contradiction;
+  const Judge& judge;
+  Look look;
+  Steps steps;
 
-  Hypothesis from(Hypothesis best, Steps steps) const {
+  Hypothesis from(const Pose2& start) const {
+    Hypothesis best = judge(start, look);
+    Steps now = steps;
     for (int h = 0; h < steps.halvings; ++h) {
-      for (int tries = 0; tries < 4; ++tries) {
+      for (int tries = 0; tries < kTries; ++tries) {
         const Hypothesis centre = best;
         for (int axis = 0; axis < 3; ++axis) {
           for (const double sign : {-1.0, 1.0}) {
-            const Hypothesis moved =
-                judgePose(reference, current, step(centre.reference_from_current, axis, sign, steps), level,
-                          samples, contradiction);
+            const Hypothesis moved = judge(step(centre.reference_from_current, axis, sign, now), look);
             if (moved.value > best.value) best = moved;
           }
         }
         if (best.value <= centre.value) break;
       }
-      steps.distance_m /= 2;
-      steps.angle_rad /= 2;
+      now.distance_m /= 2;
+      now.angle_rad /= 2;
     }
     return best;
   }
 
-  Pose2 step(const Pose2& pose, int axis, double sign, const Steps& steps) const {
-    if (axis == 0) return {pose.x_m + sign * steps.distance_m, pose.y_m, pose.yaw_rad};
-    if (axis == 1) return {pose.x_m, pose.y_m + sign * steps.distance_m, pose.yaw_rad};
-    const double yaw = wrapAngle(pose.yaw_rad + sign * steps.angle_rad);
-    const Eigen::Vector2d shift = pose * current.middle_m - Pose2{0, 0, yaw} * current.middle_m;
+  Pose2 step(const Pose2& pose, int axis, double sign, const Steps& now) const {
+    if (axis == 0) return {pose.x_m + sign * now.distance_m, pose.y_m, pose.yaw_rad};
+    if (axis == 1) return {pose.x_m, pose.y_m + sign * now.distance_m, pose.yaw_rad};
+    const double yaw = wrapAngle(pose.yaw_rad + sign * now.angle_rad);
+    const Eigen::Vector2d& middle = judge.maps.current.middle_m;
+    const Eigen::Vector2d shift = pose * middle - Pose2{0, 0, yaw} * middle;
     return {shift.x(), shift.y(), yaw};
   }
 };
 
 }  // namespace
 
-bool areDifferent(const Pose2& a, const Pose2& b, const Eigen::Vector2d& middle_m, double distance_m,
-                  double angle_rad) {
-  return (a * middle_m - b * middle_m).norm() > distance_m ||
+bool PoseDistance::apart(const Pose2& a, const Pose2& b) const {
+  return (a * point_in_current_m - b * point_in_current_m).squaredNorm() > distance_m * distance_m ||
          std::abs(wrapAngle(a.yaw_rad - b.yaw_rad)) > angle_rad;
 }
 
-Hypothesis judgePose(const MapEvidence& reference, const MapEvidence& current, const Pose2& pose,
-                     ScoreLevel level, std::size_t max_samples, double contradiction) {
-  const PoseScore score = scorePose(reference, current, pose, level, max_samples);
-  return {pose, score, score.agree - contradiction * score.contradict};
-}
-
-std::vector<Hypothesis> searchPoses(const MapEvidence& reference, const MapEvidence& current,
-                                    const std::vector<Pose2>& proposals, const RegistrationParams& params) {
-  const auto judge = [&](const Pose2& pose, ScoreLevel level, std::size_t samples) {
-    return judgePose(reference, current, pose, level, samples, params.contradiction);
-  };
-  const Eigen::Vector2d& middle = current.middle_m;
+std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<Pose2>& proposals,
+                                    const RegistrationParams& params) {
+  const Judge judge{maps, params};
+  const PoseDistance same{maps.current.middle_m, kSame_m, kSame_rad};
   std::vector<Hypothesis> poses;
   poses.reserve(proposals.size());
-  for (const Pose2& pose : proposals) poses.push_back(judge(pose, ScoreLevel::kCoarse, kGlanceSamples));
+  for (const Pose2& pose : proposals) poses.push_back(judge(pose, {ScoreLevel::kCoarse, kGlanceSamples}));
   sortBestFirst(poses);
   poses.resize(std::min(poses.size(), kGlanceKept));
-  for (Hypothesis& h : poses) h = judge(h.reference_from_current, ScoreLevel::kCoarse, kCoarseSamples);
+  for (Hypothesis& h : poses) h = judge(h.reference_from_current, {ScoreLevel::kCoarse, kCoarseSamples});
   sortBestFirst(poses);
-  poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kCoarseKept);
+  poses = bestApart(poses, same, kCoarseKept);
 
-  Climb climb{reference, current, ScoreLevel::kCoarse, kCoarseClimbSamples, params.contradiction};
-  for (Hypothesis& h : poses) h = climb.from(h, {0.4, 4 * M_PI / 180, 3});
-  poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kCoarseKept);
-
-  climb.level = ScoreLevel::kFine;
-  climb.samples = kGlanceFineSamples;
-  for (Hypothesis& h : poses)
-    h = climb.from(judge(h.reference_from_current, ScoreLevel::kFine, climb.samples),
-                   {0.2, 1 * M_PI / 180, 2});
-  sortBestFirst(poses);
-  poses = bestDifferent(poses, middle, kSame_m, kSame_rad, kClimbed);
-
-  climb.samples = kFineClimbSamples;
-  for (Hypothesis& h : poses) {
-    const Hypothesis start = judge(h.reference_from_current, ScoreLevel::kFine, climb.samples);
-    h = judge(climb.from(start, {0.1, 0.5 * M_PI / 180, 2}).reference_from_current, ScoreLevel::kFine,
-              kFineSamples);
+  for (const auto& [climb, kept] :
+       {std::pair(Climb{judge, {ScoreLevel::kCoarse, kCoarseClimbSamples}, {0.4, 4 * M_PI / 180, 3}},
+                  kCoarseKept),
+        std::pair(Climb{judge, {ScoreLevel::kFine, kGlanceFineSamples}, {0.2, M_PI / 180, 2}}, kClimbed),
+        std::pair(Climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, 0.5 * M_PI / 180, 3}},
+                  kClimbed)}) {
+    for (Hypothesis& h : poses) h = climb.from(h.reference_from_current);
+    sortBestFirst(poses);
+    while (!poses.empty() && poses.back().value < kHopeless * poses.front().value) poses.pop_back();
+    poses = bestApart(poses, same, kept);
   }
+  for (Hypothesis& h : poses) h = judge(h.reference_from_current, {ScoreLevel::kFine, kFineSamples});
   sortBestFirst(poses);
-  return bestDifferent(poses, middle, params.different_m, params.different_rad, kKept);
+  return bestApart(poses, {maps.current.middle_m, params.different_m, params.different_rad}, kKept);
 }
 
 }  // namespace cornerstone

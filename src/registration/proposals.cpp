@@ -14,8 +14,9 @@ constexpr int kDegrees = 360;
 constexpr double kWallReach_m = 0.5;
 constexpr double kWallDepth_m = 0.15;  // edges this far beside are another wall's
 constexpr double kSameWallCosine = 0.8;
-constexpr std::size_t kMaxWallEdges = 1500;  // directions of so many edges make a smooth histogram
+constexpr std::size_t kMaxWallEdges = 800;  // directions of so many edges make a smooth histogram
 constexpr std::size_t kMaxCorners = 60;  // the best fitted of each map: maps with more share plenty of them
+constexpr double kLowPeak = 0.25;        // of the highest: so few walls as agree there are chance
 constexpr double kYawReach_rad = 8 * M_PI / 180;  // a corner's arms of ten cells are right to some 5 degrees
 
 // The direction of the wall around an edge: over a metre the cells' staircase no longer matters. Empty: no
@@ -24,8 +25,7 @@ std::optional<double> wallDirection(const EdgeIndex& index, const EdgePoint& edg
   double count = 0;
   Eigen::Vector2d sum(0, 0);
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  index.forEachNear(edge.position_m, [&](int i) {
-    const EdgePoint& other = index.edges()[static_cast<std::size_t>(i)];
+  index.forEachNear(edge.position_m, kWallReach_m, [&](const EdgePoint& other) {
     const Eigen::Vector2d offset = other.position_m - edge.position_m;
     if (offset.squaredNorm() > kWallReach_m * kWallReach_m ||
         std::abs(offset.dot(edge.normal)) > kWallDepth_m || other.normal.dot(edge.normal) < kSameWallCosine)
@@ -44,7 +44,7 @@ std::optional<double> wallDirection(const EdgeIndex& index, const EdgePoint& edg
 }
 
 std::vector<double> directionsOf(const std::vector<EdgePoint>& edges) {
-  const EdgeIndex index(edges, kWallReach_m);
+  const EdgeIndex index(edges, 0.5 * kWallReach_m);
   std::vector<double> sharp(kDegrees), smooth(kDegrees);
   for (std::size_t i = 0; i < std::min(edges.size(), kMaxWallEdges); ++i) {
     const auto direction = wallDirection(index, edges[i]);
@@ -105,6 +105,9 @@ std::vector<double> DirectionMatch::peaks(std::size_t count) const {
     return agreement_[static_cast<std::size_t>(a)] > agreement_[static_cast<std::size_t>(b)];
   });
   found.resize(std::min(found.size(), count));
+  while (!found.empty() && agreement_[static_cast<std::size_t>(found.back())] <
+                               kLowPeak * agreement_[static_cast<std::size_t>(found.front())])
+    found.pop_back();
   std::vector<double> yaws;
   for (const int turn : found) yaws.push_back(nearestPeak(turn * M_PI / 180, 5 * M_PI / 180));
   return yaws;

@@ -14,6 +14,8 @@
 namespace cornerstone {
 namespace {
 
+using Corners = std::vector<CornerLandmark>;
+
 constexpr PairingLimits kMatched{
     0.3, 0.2};  // corners this near under the answer are the same: several sigma of both
 constexpr double kMergeSquare_m = 0.25;  // proposals closer than the coarse reach score alike
@@ -21,18 +23,6 @@ constexpr std::size_t kMaxYaws = 6;      // walls at right angles allow four
 constexpr double kMergeAngle_rad = 3 * M_PI / 180;
 constexpr double kPriorStep_m = 0.4;  // of the poses tried around a prior: inside the climb's reach
 constexpr double kPriorStep_rad = 4 * M_PI / 180;
-
-MapEvidence evidenceOf(const MapView& view, const RegistrationParams& params) {
-  const cv::Mat1b states = cellStates(view.map, {});
-  std::vector<EdgePoint> edges = thinEdges(view.landmarks.edges, params.fine_cell_m);
-  Eigen::Vector2d middle(0, 0);
-  for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
-  std::vector<EdgeSample> samples = samplesOf(edges);
-  EvidenceGrid coarse(view.map, states, thinEdges(edges, params.coarse_cell_m), params.coarse_cell_m,
-                      params.coarse_reach_m);
-  EvidenceGrid fine(view.map, states, edges, params.fine_cell_m, params.fine_reach_m);
-  return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
-}
 
 double overlapOf(const EvidenceGrid& reference, const EvidenceGrid& current, const Pose2& pose) {
   const Eigen::Matrix2f rotation = pose.rotation().cast<float>();
@@ -45,14 +35,13 @@ double overlapOf(const EvidenceGrid& reference, const EvidenceGrid& current, con
 }
 
 // The prior, what the paper's matching makes of it, and poses all around it.
-std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, const MapView& current,
+std::vector<Pose2> proposeAround(const Pose2& prior, const Corners& there, const Corners& here,
                                  const RegistrationParams& params) {
   std::vector<Pose2> poses{prior};
   for (int round = 0; round < 2; ++round) {
-    const CornerPairs pairs = pairNearest(reference.landmarks.corners, current.landmarks.corners,
-                                          poses.back(), {params.match_distance_m, params.prior_angle_rad});
-    const auto solved =
-        solvePairs(reference.landmarks.corners, current.landmarks.corners, pairs, poses.back());
+    const CornerPairs pairs =
+        pairNearest(there, here, poses.back(), {params.match_distance_m, params.prior_angle_rad});
+    const auto solved = solvePairs(there, here, pairs, poses.back());
     if (solved) poses.push_back(*solved);
   }
   const int steps = static_cast<int>(std::ceil(params.prior_radius_m / kPriorStep_m));
@@ -68,23 +57,24 @@ std::vector<Pose2> proposeAround(const Pose2& prior, const MapView& reference, c
   return poses;
 }
 
-std::vector<Pose2> propose(const MapView& reference, const MapView& current, const MapEvidence& there,
-                           const MapEvidence& here) {
-  const DirectionMatch directions(there.edges, here.edges);
+std::vector<Pose2> propose(const PreparedMap& reference, const PreparedMap& current,
+                           const RegistrationParams& params) {
+  const EvidencePair maps{reference.evidence, current.evidence};
+  const DirectionMatch directions(maps.reference.edges, maps.current.edges);
   std::vector<Pose2> poses =
       proposeFromCorners(reference.landmarks.corners, current.landmarks.corners, directions);
-  const std::vector<Pose2> by_walls = proposeFromWalls(there, here, directions.peaks(kMaxYaws), {});
+  WallSearchOptions options;
+  options.contradiction = params.coarse_contradiction;
+  const std::vector<Pose2> by_walls = proposeFromWalls(maps, directions.peaks(kMaxYaws), options);
   poses.insert(poses.end(), by_walls.begin(), by_walls.end());
-  return mergeProposals(poses, here.middle_m, kMergeSquare_m, kMergeAngle_rad);
+  return mergeProposals(poses, maps.current.middle_m, kMergeSquare_m, kMergeAngle_rad);
 }
 
 // Far from the prior nothing counts, neither as an answer nor as a rival.
 void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const RegistrationParams& params) {
   const Eigen::Vector2d origin(0, 0);  // of the current map's frame: what the prior places
-  const auto is_far = [&](const Hypothesis& h) {
-    return areDifferent(h.reference_from_current, prior, origin, params.prior_radius_m,
-                        params.prior_angle_rad);
-  };
+  const PoseDistance limits{origin, params.prior_radius_m, params.prior_angle_rad};
+  const auto is_far = [&](const Hypothesis& h) { return limits.apart(h.reference_from_current, prior); };
   hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), is_far), hypotheses.end());
 }
 
@@ -106,43 +96,60 @@ std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence
 }
 
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
-std::optional<RefinedPose> refine(const MapView& reference, const MapView& current, const Pose2& guess,
-                                  const RefinementOptions& options, double min_spread) {
-  const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m);
-  const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m);
+std::optional<RefinedPose> refine(const PreparedMap& reference, const PreparedMap& current,
+                                  const Pose2& guess, const RefinementOptions& options) {
+  const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m / 3);
+  const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m / 3);
   RefinementOptions everywhere = options;
   everywhere.focus_in_current_m.reset();
   const auto whole = refineOnEdges(reference_index, current_index, guess, everywhere);
   if (!whole || !options.focus_in_current_m) return whole;
   auto local = refineOnEdges(reference_index, current_index, whole->reference_from_current, options);
-  if (!local || local->spread < min_spread ||
-      areDifferent(local->reference_from_current, whole->reference_from_current, *options.focus_in_current_m,
-                   options.first_reach_m, kMergeAngle_rad))
+  if (!local || local->spread < options.min_spread ||
+      PoseDistance{*options.focus_in_current_m, options.first_reach_m, kMergeAngle_rad}.apart(
+          local->reference_from_current, whole->reference_from_current))
     return whole;
   local->spread = whole->spread;
   return local;
 }
 
-}  // namespace
-
-RegistrationOutcome registerMaps(const MapView& reference, const MapView& current,
-                                 const RegistrationHints& hints, const RegistrationParams& params) {
-  if (reference.landmarks.edges.empty()) return {{}, "the reference map has no edges"};
-  if (current.landmarks.edges.empty()) return {{}, "the current map has no edges"};
-  const MapEvidence there = evidenceOf(reference, params), here = evidenceOf(current, params);
-  const std::vector<Pose2> proposals = hints.prior ? proposeAround(*hints.prior, reference, current, params)
-                                                   : propose(reference, current, there, here);
-  std::vector<Hypothesis> best = searchPoses(there, here, proposals, params);
-  if (hints.prior) keepNear(best, *hints.prior, params);
-  const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
-  if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
-
+RefinementOptions refinementOptions(const RegistrationHints& hints, const RegistrationParams& params) {
   RefinementOptions options;
   options.first_reach_m = params.refine_reach_m;
   options.focus_in_current_m = hints.focus_in_current_m;
   options.focus_radius_m = params.focus_radius_m;
+  options.min_spread = params.min_spread;
+  return options;
+}
+
+}  // namespace
+
+MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params) {
+  std::vector<EdgePoint> edges = thinEdges(view.landmarks.edges, params.fine_cell_m);
+  Eigen::Vector2d middle(0, 0);
+  for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
+  std::vector<EdgeSample> samples = samplesOf(edges);
+  SquareCounts counts = countSquares(view.map.geometry, view.landmarks.states, params.fine_cell_m);
+  EvidenceGrid coarse(inLargerSquares(counts, params.coarse_cell_m), thinEdges(edges, params.coarse_cell_m),
+                      params.coarse_reach_m);
+  EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
+  return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
+}
+
+RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap& current,
+                                 const RegistrationHints& hints, const RegistrationParams& params) {
+  if (reference.landmarks.edges.empty()) return {{}, "the reference map has no edges"};
+  if (current.landmarks.edges.empty()) return {{}, "the current map has no edges"};
+  const MapEvidence &there = reference.evidence, &here = current.evidence;
+  const std::vector<Pose2> proposals = hints.prior ? proposeAround(*hints.prior, reference.landmarks.corners,
+                                                                   current.landmarks.corners, params)
+                                                   : propose(reference, current, params);
+  std::vector<Hypothesis> best = searchPoses({there, here}, proposals, params);
+  if (hints.prior) keepNear(best, *hints.prior, params);
+  const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
+  if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
   const auto refined =
-      refine(reference, current, best.front().reference_from_current, options, params.min_spread);
+      refine(reference, current, best.front().reference_from_current, refinementOptions(hints, params));
   if (!refined) return {{}, "too few edges agree"};
   PoseEvidence evidence = weighPoses(judged, params.fine_cell_m);
   evidence.spread = refined->spread;
@@ -164,6 +171,13 @@ RegistrationOutcome registerMaps(const MapView& reference, const MapView& curren
   return {registration, ""};
 }
 
+RegistrationOutcome registerMaps(const MapView& reference, const MapView& current,
+                                 const RegistrationHints& hints, const RegistrationParams& params) {
+  const MapEvidence there = gatherEvidence(reference, params), here = gatherEvidence(current, params);
+  return registerMaps(PreparedMap{reference.landmarks, there}, PreparedMap{current.landmarks, here}, hints,
+                      params);
+}
+
 void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("match_distance_m", params.match_distance_m);
   visitor.field("prior_radius_m", params.prior_radius_m);
@@ -173,6 +187,7 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("fine_cell_m", params.fine_cell_m);
   visitor.field("fine_reach_m", params.fine_reach_m);
   visitor.field("contradiction", params.contradiction);
+  visitor.field("coarse_contradiction", params.coarse_contradiction);
   visitor.field("different_m", params.different_m);
   visitor.degrees("different_deg", params.different_rad);
   visitor.field("refine_reach_m", params.refine_reach_m);

@@ -7,6 +7,8 @@
 namespace cornerstone {
 namespace {
 
+constexpr double kSameYaw_rad = 2 * M_PI / 180;  // half a square at 6 m: the climb makes it good
+
 struct Bounds {
   Eigen::Vector2f low{0, 0};
   Eigen::Vector2f high{0, 0};
@@ -40,17 +42,27 @@ struct Spectra {
   cv::Mat says;   // what the map says to an edge there
 };
 
-Spectra transform(const Turned& map, const Eigen::Vector2f& low, float square_m, int size) {
+// The grid of the transform.
+struct Raster {
+  float square_m;
+  int size;
+  float contradiction;  // weight of what says that no edge is there
+};
+
+Spectra transform(const Turned& map, const Eigen::Vector2f& low, const Raster& raster) {
+  const auto& [square_m, size, contradiction] = raster;
   cv::Mat1f edges(size, size, 0.0f), says(size, size, 0.0f);
   const auto at = [&](cv::Mat1f& grid, const Eigen::Vector2f& p) -> float& {
-    const Eigen::Vector2f cell = (map.rotation * p - low) / square_m;
-    return grid(std::clamp(static_cast<int>(cell.y() + 0.5f), 0, size - 1),
-                std::clamp(static_cast<int>(cell.x() + 0.5f), 0, size - 1));
+    const Eigen::Vector2f cell = (map.rotation * p - low) / raster.square_m;
+    return grid(std::clamp(static_cast<int>(cell.y() + 0.5f), 0, raster.size - 1),
+                std::clamp(static_cast<int>(cell.x() + 0.5f), 0, raster.size - 1));
   };
   for (const EdgeSample& sample : map.samples) at(edges, sample.position_m) += 1;
   const auto share = static_cast<float>(std::pow(map.opinion_cell_m / square_m, 2) / kFullEvidence);
   for (const Opinion& opinion : map.opinions)
-    at(says, opinion.centre_m) += share * static_cast<float>(opinion.evidence);
+    at(says, opinion.centre_m) +=
+        share * (opinion.evidence < 0 ? contradiction * static_cast<float>(opinion.evidence)
+                                      : static_cast<float>(opinion.evidence));
   Spectra spectra;
   cv::dft(edges, spectra.edges);
   cv::dft(says, spectra.says);
@@ -83,44 +95,86 @@ std::vector<cv::Point> highest(const cv::Mat1f& scores, std::size_t count) {
   return points;
 }
 
-}  // namespace
+// Both maps on grids of one size.
+class Correlation {
+ public:
+  Correlation(const Turned& there, const Turned& here, const WallSearchOptions& options)
+      : here_(here), peaks_(options.peaks), low_(there.bounds().low) {
+    const Bounds there_bounds = there.bounds(), here_bounds = here.bounds();
+    there_size_m_ = (there_bounds.high - there_bounds.low).maxCoeff();
+    // Turned by any yaw the current map is no larger than its diagonal.
+    const float needed_m = there_size_m_ + (here_bounds.high - here_bounds.low).norm();
+    const float square_m = std::max(static_cast<float>(options.square_m),
+                                    needed_m / static_cast<float>(options.max_size_squares - 4));
+    raster_ = {square_m, cv::getOptimalDFTSize(static_cast<int>(std::ceil(needed_m / square_m)) + 4),
+               static_cast<float>(options.contradiction)};
+    fixed_ = transform(there, low_, raster_);
+  }
 
-std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvidence& current,
-                                    const std::vector<double>& yaws, const WallSearchOptions& options) {
-  const std::vector<Opinion> reference_says = reference.coarse.opinions(),
-                             current_says = current.coarse.opinions();
-  const Turned there = Turned{reference.samples, reference_says, reference.coarse.cellSize(), {}}.by(0);
-  const Turned unturned = Turned{current.samples, current_says, current.coarse.cellSize(), {}}.by(0);
-  const Bounds there_bounds = there.bounds();
-  const float there_size_m = (there_bounds.high - there_bounds.low).maxCoeff();
-  // Turned by any yaw the current map is no larger than its diagonal.
-  const Bounds here_bounds = unturned.bounds();
-  const float needed_m = there_size_m + (here_bounds.high - here_bounds.low).norm();
-  const float square_m = std::max(static_cast<float>(options.square_m),
-                                  needed_m / static_cast<float>(options.max_size_squares - 4));
-  const int size = cv::getOptimalDFTSize(static_cast<int>(std::ceil(needed_m / square_m)) + 4);
-  const Spectra fixed = transform(there, there_bounds.low, square_m, size);
-  std::vector<Pose2> poses;
-  for (const double yaw : yaws) {
-    const Turned here = unturned.by(yaw);
+  // The best shifts of the current map turned by a yaw and, on request, by the opposite one: that only turns
+  // the current map's grid about its origin, so that the correlation becomes a convolution.
+  void search(double yaw, bool opposite_too, std::vector<Pose2>& poses) const {
+    const Turned here = here_.by(yaw);
     const Eigen::Vector2f low = here.bounds().low;
-    const Spectra moving = transform(here, low, square_m, size);
+    const Spectra moving = transform(here, low, raster_);
+    for (const cv::Point& peak : highest(product(moving, true), peaks_)) {
+      const Eigen::Vector2f shift = raster_.square_m * Eigen::Vector2f(unwrapped(peak.x), unwrapped(peak.y));
+      poses.push_back(poseOf(shift + low_ - low, yaw));
+    }
+    if (!opposite_too) return;
+    for (const cv::Point& peak : highest(product(moving, false), peaks_)) {
+      const Eigen::Vector2f shift =
+          raster_.square_m * Eigen::Vector2f(static_cast<float>(peak.x), static_cast<float>(peak.y));
+      poses.push_back(poseOf(shift + low_ + low, wrapAngle(yaw + M_PI)));
+    }
+  }
+
+ private:
+  cv::Mat1f product(const Spectra& moving, bool correlate) const {
     cv::Mat one, other;
-    cv::mulSpectrums(fixed.says, moving.edges, one, 0, true);
-    cv::mulSpectrums(fixed.edges, moving.says, other, 0, true);
+    cv::mulSpectrums(fixed_.says, moving.edges, one, 0, correlate);
+    cv::mulSpectrums(fixed_.edges, moving.says, other, 0, correlate);
     cv::Mat1f scores;
     cv::idft(one + other, scores, cv::DFT_REAL_OUTPUT);
-    for (const cv::Point& peak : highest(scores, options.peaks)) {
-      // Shifts beyond the reference map's size are negative ones, wrapped round.
-      const auto unwrapped = [&](int shift) {
-        const auto squares = static_cast<float>(shift);
-        return squares * square_m > there_size_m + 2 * square_m ? squares - static_cast<float>(size)
-                                                                : squares;
-      };
-      const Eigen::Vector2f squares(unwrapped(peak.x), unwrapped(peak.y));
-      const Eigen::Vector2f shift = squares * square_m + there_bounds.low - low;
-      poses.push_back({shift.x(), shift.y(), yaw});
+    return scores;
+  }
+  // Shifts beyond the reference map's size are negative ones, wrapped round.
+  float unwrapped(int shift) const {
+    const auto squares = static_cast<float>(shift);
+    return squares * raster_.square_m > there_size_m_ + 2 * raster_.square_m
+               ? squares - static_cast<float>(raster_.size)
+               : squares;
+  }
+  static Pose2 poseOf(const Eigen::Vector2f& shift_m, double yaw) { return {shift_m.x(), shift_m.y(), yaw}; }
+
+  Turned here_;
+  std::size_t peaks_;
+  Eigen::Vector2f low_;
+  float there_size_m_;
+  Raster raster_;
+  Spectra fixed_;
+};
+
+}  // namespace
+
+std::vector<Pose2> proposeFromWalls(const EvidencePair& maps, const std::vector<double>& yaws,
+                                    const WallSearchOptions& options) {
+  const auto& [reference, current] = maps;
+  const std::vector<Opinion> reference_says = reference.coarse.opinions(),
+                             current_says = current.coarse.opinions();
+  const Correlation correlation(
+      Turned{reference.samples, reference_says, reference.coarse.squareSize(), {}}.by(0),
+      Turned{current.samples, current_says, current.coarse.squareSize(), {}}.by(0), options);
+  std::vector<Pose2> poses;
+  std::vector<bool> done(yaws.size());
+  for (std::size_t i = 0; i < yaws.size(); ++i) {
+    if (done[i]) continue;
+    bool opposite = false;
+    for (std::size_t k = i + 1; k < yaws.size(); ++k) {
+      if (std::abs(wrapAngle(yaws[k] - yaws[i] - M_PI)) > kSameYaw_rad) continue;
+      done[k] = opposite = true;
     }
+    correlation.search(yaws[i], opposite, poses);
   }
   return poses;
 }

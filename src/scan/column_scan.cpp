@@ -163,7 +163,9 @@ RangeScan scanFromDisparity(const Disparity& disparity, const Eigen::Isometry3d&
   image.focal_px = rig.focal_px;
   image.centre_x_px = rig.centre_x_px;
   image.centre_y_px = rig.centre_y_px;
-  return scanFromInverseDepth(image, base_from_camera, params);
+  RangeScan scan = scanFromInverseDepth(image, base_from_camera, params);
+  scan.calibration_sigma_per_m = image.common_sigma;
+  return scan;
 }
 
 }  // namespace cornerstone

@@ -1,5 +1,8 @@
 // The pose of one saved map in another, or a refusal with its reason.
 #include <cmath>
+#include <functional>
+#include <future>
+#include <utility>
 
 #include "cornerstone/mapping/map_files.h"
 #include "cornerstone/registration/register_maps.h"
@@ -38,6 +41,17 @@ void addAnswer(const Registration& answer, nlohmann::json& result) {
                  {"second_best", answer.second_best}});
 }
 
+struct MapLook {
+  Landmarks landmarks;
+  MapEvidence evidence;
+};
+
+MapLook lookAt(const GridMap& map) {
+  Landmarks landmarks = detectLandmarks(map, {});
+  MapEvidence evidence = gatherEvidence({map, landmarks}, {});
+  return {std::move(landmarks), std::move(evidence)};
+}
+
 Outcome align(int argc, const char* const* argv) {
   const Arguments arguments(
       argc, argv, "align_maps REF.yaml CUR.yaml [--prior X,Y,YAW_DEG] [--focus X,Y] [--overlay OUT.png]", 2,
@@ -45,11 +59,11 @@ Outcome align(int argc, const char* const* argv) {
   const RegistrationHints hints{priorOf(arguments), focusOf(arguments)};
   const GridMap reference = loadMap(arguments.positional(0)), current = loadMap(arguments.positional(1));
   Stopwatch watch;
-  const Landmarks reference_landmarks = detectLandmarks(reference, {}),
-                  current_landmarks = detectLandmarks(current, {});
+  auto other = std::async(std::launch::async, lookAt, std::cref(current));  // both maps at once
+  const MapLook there = lookAt(reference), here = other.get();
   const double detect_ms = watch.lap_ms();
-  const auto [answer, refusal] =
-      registerMaps({reference, reference_landmarks}, {current, current_landmarks}, hints, {});
+  const auto [answer, refusal] = registerMaps(PreparedMap{there.landmarks, there.evidence},
+                                              PreparedMap{here.landmarks, here.evidence}, hints, {});
   const double register_ms = watch.lap_ms();
 
   nlohmann::json result{
@@ -60,7 +74,7 @@ Outcome align(int argc, const char* const* argv) {
   else
     result["reason"] = refusal;
   if (arguments.has("overlay")) {
-    const Overlay overlay{reference, reference_landmarks, current, current_landmarks,
+    const Overlay overlay{reference, there.landmarks, current, here.landmarks,
                           answer ? answer->matches : std::vector<std::pair<int, int>>{}};
     writePicture(
         pictureOfOverlay(overlay, answer ? answer->reference_from_current : hints.prior.value_or(Pose2{})),

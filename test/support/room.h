@@ -2,7 +2,7 @@
 // noise.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 #include <optional>

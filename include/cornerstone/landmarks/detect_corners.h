@@ -28,6 +28,7 @@ struct LandmarkParams {
 void describe(ParamVisitor& visitor, LandmarkParams& params);
 
 struct Landmarks {
+  cv::Mat1b states;  // CellState of each of the map's cells
   std::vector<EdgePoint> edges;
   std::vector<CornerLandmark> corners;
 };

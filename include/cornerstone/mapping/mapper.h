@@ -4,10 +4,16 @@
 // The pose is carried by odometry from scan to scan with its covariance (odometry_filter.h), corrected by
 // each fit (scan_fit.h); where a scan fits nothing, odometry alone moves it on. Scans that contradict the map
 // in most of their beams are not inserted unless they go on doing so: then it is the world that changed.
+//
+// Behind that a graph of key frames bends the whole way so that all looks agree (frame_graph.h); when it
+// moves them, the map is drawn anew beside the running one, which goes on until the new one takes its place:
+// then the pose and map_from_odom step by what was corrected. In a loaded map there is no graph: its cells do
+// not move.
 #pragma once
 
 #include <optional>
 
+#include "cornerstone/mapping/map_redraw.h"
 #include "cornerstone/mapping/occupancy_grid.h"
 #include "cornerstone/mapping/odometry_filter.h"
 #include "cornerstone/mapping/scan_fit.h"
@@ -18,6 +24,7 @@ struct MapperParams {
   GridParams grid;
   ScanFitParams fit;
   OdometryNoise odometry;
+  FrameGraphParams graph;
   bool fit_scans = true;        // false: odometry as it is (for robots that localise by other means)
   int max_contradictions = 10;  // scans in a row that fit ill before they are taken for a changed world
 };
@@ -45,10 +52,16 @@ class Mapper {
   const Pose2& mapFromOdom() const { return map_from_odom_; }
   PoseEstimate pose() const { return filter_.pose(); }
   const OdometryFilter& odometry() const { return filter_; }
+  const FrameGraph& graph() const { return graph_; }
   std::uint32_t epoch() const { return epoch_; }
+  int redraws() const { return redraws_; }  // how often the map was drawn anew in this epoch
 
  private:
   void predict(const Pose2& odom_from_base);
+  void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
+  void straighten();                                                  // the map, by what the graph knows
+  void redraw();
+  bool movesTheMap(const GraphSolution& solution) const;
   LookMotion motion() const;  // since the last look that was inserted
   double newShare(const RangeScan& scan) const;
 
@@ -56,6 +69,10 @@ class Mapper {
   OccupancyGrid grid_;
   Pose2 map_from_odom_;
   OdometryFilter filter_;
+  FrameGraph graph_;
+  std::optional<MapRedraw> redraw_;  // under way
+  int redraws_ = 0;
+  bool loaded_ = false;
   std::optional<Pose2> last_odom_;      // odom_from_base of the last scan
   std::optional<Pose2> start_;          // where a loaded map says the robot is
   std::optional<Pose2> last_inserted_;  // map_from_base

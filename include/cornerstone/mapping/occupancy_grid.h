@@ -49,6 +49,7 @@ struct LookMotion {
   double turned_rad = 0;
 };
 constexpr LookMotion kFirstLook{1e3, 0};
+LookMotion motionBetween(const Pose2& map_from_before, const Pose2& map_from_now);
 
 // A rectangle of cells read from the grid, for work that touches many of them.
 struct CellWindow {
@@ -86,6 +87,8 @@ class OccupancyGrid {
   double newShare(double range_m, const LookMotion& motion) const;
   void load(const GridMap& map);  // replaces all; throws InputError when the resolution or alignment differs
   void clear();
+  // Becomes another grid of the same cells; every tile of both counts as changed.
+  void becomeRedrawn(OccupancyGrid&& redrawn);
 
   bool empty() const { return tiles_.empty(); }
   std::uint64_t version() const { return version_; }  // rises with every change

@@ -15,7 +15,7 @@ namespace cornerstone {
 
 struct OdometryNoise {
   // What is not known about the systematic drift at the start (standard deviations).
-  double scale_ratio = 0.02;
+  double scale_ratio = 0.005;          // wheels that were measured; more for tracks and worn tyres
   double yaw_drift_rad_per_m = 0.015;  // nearly a degree a metre
   double turn_scale_ratio = 0.02;
   // How fast the rates themselves change with load and floor, relative to the above, per root of a metre.
@@ -41,6 +41,8 @@ class OdometryFilter {
   void place(const PoseEstimate& estimate);
   void step(const Pose2& odom_step);  // of the base, in its own frame before the step
   void correct(const PoseEstimate& posterior);
+  // The map was drawn anew: the pose moves with it, its uncertainty stays; rates: of the graph that knows.
+  void moveBy(const Pose2& correction, const Eigen::Vector3d& rates);
   PoseEstimate pose() const { return {map_from_base_, covariance_.topLeftCorner<3, 3>()}; }
   const Eigen::Vector3d& rates() const { return rates_; }  // s, b in rad/m, t
   const Matrix6d& covariance() const { return covariance_; }

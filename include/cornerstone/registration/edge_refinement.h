@@ -17,6 +17,7 @@ struct RefinementOptions {
   std::size_t max_edges = 2000;                       // of each map, evenly chosen: millimetres need no more
   std::optional<Eigen::Vector2d> focus_in_current_m;  // edges near it weigh most, as a Gaussian; empty: alike
   double focus_radius_m = 4;                          // its standard deviation
+  double min_spread = 0.05;  // of the edges around the focus: with less the whole map decides
 };
 
 struct RefinedPose {

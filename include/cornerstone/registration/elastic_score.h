@@ -11,7 +11,7 @@ struct ElasticOptions {
   double tile_m = 6;               // of a neighbourhood: a room and its walls
   double step_m = 0.2;             // first step of a neighbourhood's search, then half of it
   double play_m = 0.4;             // farthest shift: what tablet maps of a floor bend by
-  std::size_t max_samples = 1000;  // of each map
+  std::size_t max_samples = 3000;  // of each map
 };
 
 PoseScore scoreElastic(const MapEvidence& reference, const MapEvidence& current,

@@ -7,6 +7,7 @@
 
 #include "cornerstone/base/pose2.h"
 #include "cornerstone/registration/evidence_grid.h"
+#include "cornerstone/registration/thin_edges.h"
 
 namespace cornerstone {
 
@@ -18,6 +19,11 @@ struct MapEvidence {
   Eigen::Vector2d middle_m;         // mean of the edges
 };
 
+struct EvidencePair {
+  const MapEvidence& reference;
+  const MapEvidence& current;
+};
+
 struct PoseScore {
   double agree = 0;
   double contradict = 0;
@@ -27,8 +33,12 @@ struct PoseScore {
 
 enum class ScoreLevel { kCoarse, kFine };
 
-// max_samples: of each map, at most; the counts are scaled up to all of them.
-PoseScore scorePose(const MapEvidence& reference, const MapEvidence& current,
-                    const Pose2& reference_from_current, ScoreLevel level, std::size_t max_samples);
+// How closely a pose is looked at.
+struct Look {
+  ScoreLevel level;
+  std::size_t max_samples;  // of each map; the counts are scaled up to all of them
+};
+
+PoseScore scorePose(const EvidencePair& maps, const Pose2& reference_from_current, const Look& look);
 
 }  // namespace cornerstone

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "cornerstone/landmarks/edge_index.h"
 #include "cornerstone/registration/pose_score.h"
 #include "cornerstone/registration/registration_params.h"
 
@@ -16,14 +15,16 @@ struct Hypothesis {
   double value = 0;  // what agrees less what contradicts, in edges
 };
 
-// Two poses are different when the current map's middle lies elsewhere or is turned.
-bool areDifferent(const Pose2& a, const Pose2& b, const Eigen::Vector2d& middle_m, double distance_m,
-                  double angle_rad);
+// Two poses are different when they put a point of the current map far apart, or turn it otherwise.
+struct PoseDistance {
+  Eigen::Vector2d point_in_current_m;
+  double distance_m;
+  double angle_rad;
 
-Hypothesis judgePose(const MapEvidence& reference, const MapEvidence& current, const Pose2& pose,
-                     ScoreLevel level, std::size_t max_samples, double contradiction);
+  bool apart(const Pose2& a, const Pose2& b) const;
+};
 
-std::vector<Hypothesis> searchPoses(const MapEvidence& reference, const MapEvidence& current,
-                                    const std::vector<Pose2>& proposals, const RegistrationParams& params);
+std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<Pose2>& proposals,
+                                    const RegistrationParams& params);
 
 }  // namespace cornerstone

@@ -9,13 +9,19 @@
 
 #include "cornerstone/landmarks/detect_corners.h"
 #include "cornerstone/mapping/grid_map.h"
+#include "cornerstone/registration/pose_score.h"
 #include "cornerstone/registration/registration_params.h"
 
 namespace cornerstone {
 
-struct MapView {  // what is known of one robot's map; both must outlive the call
+// What is known of one robot's map; all parts must outlive the call.
+struct MapView {
   const GridMap& map;
   const Landmarks& landmarks;
+};
+struct PreparedMap {  // the same with what every attempt would compute anew
+  const Landmarks& landmarks;
+  const MapEvidence& evidence;
 };
 
 struct Registration {
@@ -42,6 +48,10 @@ struct RegistrationOutcome {
   std::string refusal;                       // why, in words
 };
 
+MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params);
+
+RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap& current,
+                                 const RegistrationHints& hints, const RegistrationParams& params);
 RegistrationOutcome registerMaps(const MapView& reference, const MapView& current,
                                  const RegistrationHints& hints, const RegistrationParams& params);
 

@@ -23,6 +23,9 @@ struct RegistrationParams {
   double fine_reach_m = 0.25;
   // An edge on free space counts as much against a pose as an edge on an edge counts for it.
   double contradiction = 1.0;
+  // The same on the coarse squares. They forgive what maps bend by, so what contradicts there is wrong: a
+  // right pose with little overlap must not drown in wrong ones that lay much of the maps on each other.
+  double coarse_contradiction = 3.0;
   // Poses farther apart than this are different answers: beyond a bent map's play.
   double different_m = 1.0;
   double different_rad = 10 * M_PI / 180;

@@ -11,12 +11,13 @@
 namespace cornerstone {
 
 struct WallSearchOptions {
-  double square_m = 0.4;       // of the correlated grids: within the coarse reach
+  double square_m = 0.5;       // of the correlated grids: the coarse reach
   int max_size_squares = 512;  // of the transform: larger maps get larger squares
   std::size_t peaks = 20;      // poses for each yaw
+  double contradiction = 3;    // weight of an edge on free space against an edge on an edge
 };
 
-std::vector<Pose2> proposeFromWalls(const MapEvidence& reference, const MapEvidence& current,
-                                    const std::vector<double>& yaws, const WallSearchOptions& options);
+std::vector<Pose2> proposeFromWalls(const EvidencePair& maps, const std::vector<double>& yaws,
+                                    const WallSearchOptions& options);
 
 }  // namespace cornerstone

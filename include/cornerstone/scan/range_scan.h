@@ -23,6 +23,9 @@ struct RangeScan {
   Pose2 base_from_sensor;
   std::vector<Beam> beams;      // rising bearing
   double correlated_beams = 1;  // neighbours that share one error (stereo: the correlation window's width)
+  // Standard deviation, 1/m, of the error that the inverse depths of all looks of this sensor share
+  // (scan_calibration.h); 0: none is known of.
+  double calibration_sigma_per_m = 0;
 };
 
 }  // namespace cornerstone

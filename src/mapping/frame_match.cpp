@@ -1,0 +1,134 @@
+#include "cornerstone/mapping/frame_match.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace cornerstone {
+namespace {
+
+constexpr int kRounds = 6;
+constexpr int kWideRounds = 2;  // at the whole gate
+
+struct Sums {
+  Matrix5d squares = Matrix5d::Zero();   // J' W J
+  Vector5d gradient = Vector5d::Zero();  // J' W r
+  int in_view = 0;
+  int met = 0;
+};
+
+class Matching {
+ public:
+  Matching(const KeyFrame& earlier, const KeyFrame& later, const ScanCalibration& calibration,
+           const FrameMatchParams& params)
+      : earlier_(earlier),
+        later_(later),
+        calibration_(calibration.offset_per_m, calibration.slope_per_m),
+        params_(params),
+        sensor_from_base_(earlier.base_from_sensor.inverse()) {}
+
+  Sums sumAt(const Pose2& earlier_from_later, double gate_m) const {
+    Sums sums;
+    const Eigen::Matrix2d rotation = earlier_from_later.rotation();
+    for (const WallPiece& piece : later_.pieces) {
+      if (!piece.valid) continue;
+      const Eigen::Vector2d arm_m = rotation * (piece.point_m + piece.by_calibration * calibration_);
+      const Eigen::Vector2d point_m = earlier_from_later.translation() + arm_m;
+      const Eigen::Vector2d in_sensor_m = sensor_from_base_ * point_m;
+      const double bearing_rad = std::atan2(in_sensor_m.y(), in_sensor_m.x());
+      if (bearing_rad < earlier_.bearings_rad.front() || bearing_rad > earlier_.bearings_rad.back()) continue;
+      ++sums.in_view;
+      const WallPiece& wall = earlier_.pieces[nearestBeam(bearing_rad)];
+      if (!wall.valid || std::abs(wall.normal.dot(rotation * piece.normal)) < params_.min_normal_cosine)
+        continue;
+      const double residual_m = wall.normal.dot(point_m - wall.point_m - wall.by_calibration * calibration_);
+      if (std::abs(residual_m) > gate_m) continue;
+      const double variance_m2 = wall.sigma_m * wall.sigma_m + piece.sigma_m * piece.sigma_m +
+                                 params_.wall_sigma_m * params_.wall_sigma_m;
+      const double loss =
+          1 + residual_m * residual_m / (variance_m2 * params_.loss_sigmas * params_.loss_sigmas);
+      const double weight = 1 / (loss * variance_m2 * later_.correlated_beams);
+      Vector5d row;
+      row << wall.normal, wall.normal.y() * arm_m.x() - wall.normal.x() * arm_m.y(),
+          (rotation * piece.by_calibration - wall.by_calibration).transpose() * wall.normal;
+      sums.squares += weight * row * row.transpose();
+      sums.gradient += weight * residual_m * row;
+      ++sums.met;
+    }
+    return sums;
+  }
+
+ private:
+  std::size_t nearestBeam(double bearing_rad) const {
+    const auto& bearings = earlier_.bearings_rad;
+    const auto after = std::lower_bound(bearings.begin(), bearings.end(), bearing_rad);
+    if (after == bearings.begin()) return 0;
+    const bool before_is_nearer = bearing_rad - *(after - 1) < *after - bearing_rad;
+    return static_cast<std::size_t>(after - bearings.begin()) - (before_is_nearer ? 1 : 0);
+  }
+
+  const KeyFrame& earlier_;
+  const KeyFrame& later_;
+  Eigen::Vector2d calibration_;
+  const FrameMatchParams& params_;
+  Pose2 sensor_from_base_;
+};
+
+bool enough(const Sums& sums, const FrameMatchParams& params) {
+  return sums.met >= params.min_pieces && sums.met >= params.min_agreeing_share * sums.in_view;
+}
+
+// The quadratic of the sums at their pose, tempered by the floor: information L becomes (I + L F)^-1 L.
+FrameMatch quadraticOf(const Sums& sums, const Pose2& pose, const Eigen::Vector2d& calibration,
+                       const FrameMatchParams& params) {
+  Vector5d floor;
+  floor << params.floor_sigma_m, params.floor_sigma_m, params.floor_sigma_rad, params.floor_calibration_per_m,
+      params.floor_calibration_per_m;
+  const Matrix5d temper =
+      (Matrix5d::Identity() + sums.squares * floor.cwiseAbs2().asDiagonal().toDenseMatrix()).inverse();
+  const Matrix5d information = temper * sums.squares;
+  // In units of the floor all five directions are alike, and what is not observed shows as a zero.
+  const Matrix5d scaled =
+      floor.asDiagonal() * ((information + information.transpose()) / 2) * floor.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> axes(scaled);
+  constexpr double kObserved = 1e-6;
+  const Vector5d along = axes.eigenvectors().transpose() * floor.asDiagonal() * (temper * sums.gradient);
+  FrameMatch match;
+  match.earlier_from_later = pose;
+  match.pieces = sums.met;
+  for (int i = 0; i < 5; ++i) {
+    const double strength = std::sqrt(std::max(0.0, axes.eigenvalues()(i)));
+    if (axes.eigenvalues()(i) < kObserved) continue;
+    match.sqrt_information.row(i) =
+        strength * axes.eigenvectors().col(i).transpose() * floor.cwiseInverse().asDiagonal();
+    match.offset(i) = along(i) / strength;
+  }
+  match.offset -= match.sqrt_information.rightCols<2>() * calibration;
+  return match;
+}
+
+}  // namespace
+
+std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& later,
+                                      const FrameMatchStart& start, const FrameMatchParams& params) {
+  if (earlier.pieces.empty() || later.pieces.empty()) return std::nullopt;
+  const Matching matching(earlier, later, start.calibration, params);
+  Pose2 pose = start.earlier_from_later;
+  for (int round = 0; round < kRounds; ++round) {
+    const Sums sums = matching.sumAt(pose, round < kWideRounds ? params.gate_m : params.gate_m / 2);
+    if (!enough(sums, params)) return std::nullopt;
+    constexpr double kWeak = 1e-3;  // 1 / m^2 and 1 / rad^2: what is not observed stays as expected
+    const Eigen::Matrix3d squares = sums.squares.topLeftCorner<3, 3>() + kWeak * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d step = -squares.ldlt().solve(sums.gradient.head<3>());
+    if (!step.allFinite()) return std::nullopt;
+    pose = {pose.x_m + step.x(), pose.y_m + step.y(), wrapAngle(pose.yaw_rad + step.z())};
+    if (step.norm() < 1e-4 && round >= kWideRounds) break;
+  }
+  const Sums sums = matching.sumAt(pose, params.gate_m / 2);
+  if (!enough(sums, params)) return std::nullopt;
+  return quadraticOf(sums, pose, {start.calibration.offset_per_m, start.calibration.slope_per_m}, params);
+}
+
+}  // namespace cornerstone

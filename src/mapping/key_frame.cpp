@@ -1,0 +1,74 @@
+#include "cornerstone/mapping/key_frame.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace cornerstone {
+namespace {
+
+Eigen::Vector2d endOf(const Beam& beam) {
+  return beam.range_m * Eigen::Vector2d(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad));
+}
+
+// In the sensor frame; not valid where neighbours have no answer or do not lie on one line.
+WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPieceParams& params) {
+  WallPiece piece;
+  const auto reach = static_cast<std::size_t>(params.beams_each_side);
+  const Beam& middle = beams[i];
+  if (!middle.hit || middle.range_m > params.max_range_m || i < reach || i + reach >= beams.size())
+    return piece;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  std::size_t count = 0;
+  for (std::size_t k = i - reach; k <= i + reach; ++k) {
+    if (!beams[k].hit) continue;
+    const Eigen::Vector2d end_m = endOf(beams[k]);
+    sum += end_m;
+    squares += end_m * end_m.transpose();
+    ++count;
+  }
+  if (count < 2 * reach) return piece;  // all but one
+  const Eigen::Vector2d mean_m = sum / static_cast<double>(count);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(squares / static_cast<double>(count) - mean_m * mean_m.transpose());
+  const Eigen::Vector2d normal = axes.eigenvectors().col(0);
+  const double incidence = std::abs(normal.dot(endOf(middle).normalized()));
+  const double scatter_m = std::sqrt(std::max(0.0, axes.eigenvalues()(0)));
+  const double along = std::sqrt(std::max(0.0, 1 - incidence * incidence));
+  const double bearing_m = params.bearing_sigma_beams * middle.width_rad * middle.range_m;
+  const double across_m = std::hypot(middle.sigma_m * incidence, bearing_m * along);
+  if (incidence < params.min_incidence ||
+      scatter_m > params.max_sigmas * middle.sigma_m * incidence + params.max_scatter_m)
+    return piece;
+  const double range_m = mean_m.norm(), bearing_rad = std::atan2(mean_m.y(), mean_m.x());
+  const Eigen::Matrix2d by_calibration =
+      mean_m.normalized() * rangeByCalibration(range_m, bearing_rad).transpose();
+  return {mean_m, normal, across_m, by_calibration, true};
+}
+
+WallPiece moved(const Pose2& base_from_sensor, const WallPiece& piece) {
+  const Eigen::Matrix2d rotation = base_from_sensor.rotation();
+  return {base_from_sensor * piece.point_m, rotation * piece.normal, piece.sigma_m,
+          rotation * piece.by_calibration, piece.valid};
+}
+
+}  // namespace
+
+KeyFrame makeKeyFrame(const RangeScan& scan, const Pose2& odom_from_base, const Pose2& map_from_base,
+                      const WallPieceParams& params) {
+  KeyFrame frame;
+  frame.odom_from_base = odom_from_base;
+  frame.map_from_base = map_from_base;
+  frame.base_from_sensor = scan.base_from_sensor;
+  frame.correlated_beams = std::max(1.0, scan.correlated_beams);
+  frame.calibration_sigma_per_m = scan.calibration_sigma_per_m;
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+    frame.bearings_rad.push_back(scan.beams[i].bearing_rad);
+    const WallPiece piece = pieceAt(scan.beams, i, params);
+    frame.pieces.push_back(piece.valid ? moved(scan.base_from_sensor, piece) : WallPiece{});
+  }
+  frame.looks.push_back({scan, {}});
+  return frame;
+}
+
+}  // namespace cornerstone

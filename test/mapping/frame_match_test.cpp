@@ -1,0 +1,83 @@
+#include "cornerstone/mapping/frame_match.h"
+
+#include <gtest/gtest.h>
+
+#include "support/room_scan.h"
+
+namespace cornerstone {
+namespace {
+
+KeyFrame frameAt(const Pose2& pose, const ScanCalibration& needed = {}) {
+  return makeKeyFrame(test::scanOf(test::officeRoom(), pose, needed), pose, pose, {});
+}
+
+// What the match's quadratic says of a motion and a calibration: 0 at what it holds for true.
+double lengthAt(const FrameMatch& match, const Pose2& motion, const ScanCalibration& calibration) {
+  Vector5d at;
+  at << motion.x_m - match.earlier_from_later.x_m, motion.y_m - match.earlier_from_later.y_m,
+      wrapAngle(motion.yaw_rad - match.earlier_from_later.yaw_rad), calibration.offset_per_m,
+      calibration.slope_per_m;
+  return (match.sqrt_information * at + match.offset).norm();
+}
+
+TEST(KeyFrame, PiecesLieOnTheWallsTheySee) {
+  const test::Room room = test::officeRoom();
+  const Pose2 pose{2, 2, 0.7};
+  const KeyFrame frame = frameAt(pose);
+  int valid = 0, near = 0;
+  for (const WallPiece& piece : frame.pieces) {
+    if (!piece.valid) continue;
+    ++valid;
+    near += room.distanceTo(pose * piece.point_m) < 0.02;
+    EXPECT_NEAR(piece.normal.norm(), 1, 1e-9);
+  }
+  EXPECT_GT(valid, 80);
+  EXPECT_GT(near, 0.95 * valid);  // some bend round a corner
+}
+
+TEST(FrameMatch, FindsTheMotionBetweenTwoLooks) {
+  const Pose2 before{2, 2, 0.7}, after{2.3, 2.25, 0.85};
+  const Pose2 truth = before.inverse() * after;
+  const Pose2 guess{truth.x_m + 0.08, truth.y_m - 0.06, truth.yaw_rad + 0.03};
+  const auto match = matchFrames(frameAt(before), frameAt(after), {guess, {}}, {});
+  ASSERT_TRUE(match);
+  EXPECT_NEAR(match->earlier_from_later.x_m, truth.x_m, 0.005);
+  EXPECT_NEAR(match->earlier_from_later.y_m, truth.y_m, 0.005);
+  EXPECT_NEAR(match->earlier_from_later.yaw_rad, truth.yaw_rad, 0.004);
+}
+
+// Walls seen from near and far tell the offset: at the needed calibration the true motion is far better than
+// without it.
+TEST(FrameMatch, KnowsHowTheMotionHangsOnTheCalibration) {
+  const ScanCalibration needed{0.005, 0.003};  // 0.05 and 0.03 px over f B = 9.6 px m
+  const Pose2 before{1.2, 2.2, 0.3}, after{3.2, 2.4, 0.2};
+  const Pose2 truth = before.inverse() * after;
+  const auto match = matchFrames(frameAt(before, needed), frameAt(after, needed), {truth, {}}, {});
+  ASSERT_TRUE(match);
+  EXPECT_LT(lengthAt(*match, truth, needed), 0.5 * lengthAt(*match, truth, {}));
+  EXPECT_LT(lengthAt(*match, truth, needed), 1);
+}
+
+TEST(FrameMatch, LooksAtOtherWallsDoNotMatch) {
+  const auto match = matchFrames(frameAt({2, 2, 0.7}), frameAt({2, 2, -2.4}), {{0, 0, -3.1}, {}}, {});
+  EXPECT_FALSE(match);
+  EXPECT_FALSE(matchFrames(frameAt({2, 2, 0.7}), makeKeyFrame({}, {}, {}, {}), {}, {}));
+}
+
+// Along a bare corridor nothing is said, and the quadratic must not claim it.
+TEST(FrameMatch, ABareCorridorLeavesItsAxisOpen) {
+  test::Room corridor;
+  corridor.walls = {{{-50, -1}, {50, -1}}, {{-50, 1}, {50, 1}}};
+  const auto frame = [&](const Pose2& pose) {
+    return makeKeyFrame(test::scanOf(corridor, pose), pose, pose, {});
+  };
+  const auto match = matchFrames(frame({0, 0, 0}), frame({0.4, 0.1, 0.05}), {{0.5, 0.1, 0.05}, {}}, {});
+  ASSERT_TRUE(match);
+  EXPECT_NEAR(match->earlier_from_later.y_m, 0.1, 0.005);
+  const Pose2 farther{match->earlier_from_later.x_m + 0.3, match->earlier_from_later.y_m,
+                      match->earlier_from_later.yaw_rad};
+  EXPECT_LT(lengthAt(*match, farther, {}), lengthAt(*match, match->earlier_from_later, {}) + 0.5);
+}
+
+}  // namespace
+}  // namespace cornerstone
