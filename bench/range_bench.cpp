@@ -139,9 +139,11 @@ void rangePart(const World& world) {
   std::printf(
       "\n### Ranges\n\nThe nearest obstacle between %.2f and %.2f m height in every image column of %d views "
       "on the "
-      "same route, cameras spoiled likewise. Phantom: nearer than the truth by more than 20%% and 0.2 m, of "
+      "same route, cameras spoiled likewise. Phantom: nearer than all that is true within a degree by more "
+      "than 20%% and 0.2 m, of "
       "1,000 "
-      "columns. Missed: an obstacle within 4 m taken for one farther by as much; silent: no answer; of 1,000 "
+      "columns. Missed: an obstacle within 4 m taken for something farther by as much; silent: no answer; of "
+      "1,000 "
       "columns "
       "with one. Error: median of |range - truth| in mm, by the true distance. cornerstone: its scan; the "
       "peers: "

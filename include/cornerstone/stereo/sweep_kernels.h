@@ -83,6 +83,7 @@ struct SweepKernels {
   void (*average)(const AverageRow& row);
 };
 
-const SweepKernels& sweepKernels();
+const SweepKernels& sweepKernels();       // the fastest that this processor has
+const SweepKernels& plainSweepKernels();  // those of every processor of the architecture
 
 }  // namespace cornerstone
