@@ -116,8 +116,8 @@ void compare(const World& world, const std::vector<Pose2>& poses, int width_px) 
     cv::Mat1f disparity_px;
     cv::divide(mounting.rig.focal_px * mounting.rig.baseline_m, view.depth_m, disparity_px);
     disparity_px.setTo(0, view.depth_m <= 0);
-    const std::vector<double> truth_m =
-        nearestRanges(disparity_px, {mounting.rig, mounting.base_from_camera});
+    const std::vector<Truth> truth =
+        truthOf(nearestRanges(disparity_px, {mounting.rig, mounting.base_from_camera}));
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const std::vector<double> ranges_m = methods[m].ranges(view.images);
       for (std::size_t c = 0; c < truth.size(); ++c) count(ranges_m[c], truth[c], columns[m]);

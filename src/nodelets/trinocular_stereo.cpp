@@ -32,6 +32,11 @@ struct Camera {
   cv::Mat1b rectified;  // kept, so that nothing is allocated image by image
 };
 
+// Fewer pixels with texture that have an answer, in so many sets on end: the images do not fit the
+// calibrations.
+constexpr double kLeastMatched = 0.1;
+constexpr int kPoorSets = 10;
+
 std::size_t cameraCount(const ImageSet& set) { return set.images[2] ? 3 : 2; }
 
 }  // namespace
@@ -159,6 +164,15 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     }
   }
 
+  std::string complaintOf(const ImageSet& set) const {
+    if (poor_sets_ >= kPoorSets)
+      return "hardly a pixel matches: cameras swapped, calibrations of another rig, or images of different "
+             "instants";
+    if (params_.third_camera && !set.images[2])
+      return cameras_[2].name + " is silent: two cameras go on alone";
+    return {};
+  }
+
   bool isWanted() const {
     return disparity_publisher_.getNumSubscribers() + sigma_publisher_.getNumSubscribers() +
                rejections_publisher_.getNumSubscribers() + picture_publisher_.getNumSubscribers() >
@@ -188,6 +202,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   std::deque<ImageSet> held_;  // complete sets that came before the calibrations, oldest first
   ros::WallTimer held_timer_;
   Disparity disparity_;
+  int poor_sets_ = 0;  // on end, see kPoorSets
   cv::Mat3b picture_;
   ros::Publisher disparity_publisher_;
   ros::Publisher sigma_publisher_;

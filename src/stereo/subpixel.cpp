@@ -13,9 +13,9 @@ namespace {
 constexpr int kSlack = 16;  // kernels work in whole vectors
 constexpr float kLeastWeight = 1e-6F;
 constexpr float kNone_px = -1e4F;
-// What the fit does not know is added to every sigma: slant within the windows, rectification, rounding. Half
-// of it is right for rendered images, all of it for photographs from calibrated cameras.
-constexpr float kModelSigma_px = 0.15F;
+// What the fit does not know is added to every sigma: slant within the windows, rectification, rounding.
+// Rendered images would do with half of it, photographs want up to 0.15.
+constexpr float kModelSigma_px = 0.1F;
 constexpr float kLargestStep_px = 1.0F;
 
 struct Fit {

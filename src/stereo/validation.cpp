@@ -55,7 +55,7 @@ void Validator::checkWinners(const Winners& winners, const SweepInput& input, co
                            (disparity_px >= last_px && after[x] < costs[x]) || disparity_px > last_px;
       Rejection verdict = outward ? Rejection::kRange : Rejection::kNone;
       const int gain = std::max(chance[x] - costs[x], 0);
-      const bool flat = static_cast<float>(gain) < flat_gain * static_cast<float>(chance[x]);
+      const bool flat = static_cast<float>(gain) <= flat_gain * static_cast<float>(chance[x]);
       if (margins[x] < smallest_margin) verdict = flat ? Rejection::kTexture : Rejection::kUniqueness;
       if (costs[x] == Winners::kNoCost) verdict = Rejection::kOutside;
       rejections[x] = codeOf(verdict);

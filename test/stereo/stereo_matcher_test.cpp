@@ -163,6 +163,18 @@ TEST(StereoMatcher, BuffersOfOneFrameDoNotReachTheNext) {
   EXPECT_EQ(cv::norm(disparity.sigma_px, fresh.sigma_px, cv::NORM_INF), 0);
 }
 
+TEST(StereoMatcher, ImagesThatDoNotFitTheRigMatchNowhere) {
+  cv::RNG random(14);
+  StereoImages images = viewsOf(Texture(kSize, 1, 30, random), {7, 0}, {2, 1}, random);
+  EXPECT_GT(matchedShare(matched(images)).value(), 0.9);
+  std::swap(images.reference, images.right);  // the top camera contradicts, too
+  EXPECT_LT(matchedShare(matched(images)).value(), 0.05);
+  images.top.release();
+  EXPECT_LT(matchedShare(matched(images)).value(), 0.05);
+  const cv::Mat1b bare(kSize, 90);
+  EXPECT_FALSE(matchedShare(matched({bare, bare, {}})));
+}
+
 TEST(StereoMatcher, NearerThanTheRangeIsRefused) {
   cv::RNG random(7);
   StereoParams params;
