@@ -41,9 +41,6 @@ cv::Mat1f matchOpenCV(cv::StereoMatcher& matcher, const cv::Mat1b& reference, co
   return disparity_px;
 }
 
-namespace {
-
-// Planar range of each column's nearest pixel within the band; 0: none.
 std::vector<double> nearestRanges(const cv::Mat1f& disparity_px, const CameraView& view) {
   const ScanParams band;
   std::vector<double> ranges_m(static_cast<std::size_t>(disparity_px.cols), 0);
@@ -62,8 +59,6 @@ std::vector<double> nearestRanges(const cv::Mat1f& disparity_px, const CameraVie
     }
   return ranges_m;
 }
-
-}  // namespace
 
 void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, const Pose2& map_from_base,
                          mrpt::maps::COccupancyGridMap2D& map) {

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 #include <optional>
+#include <vector>
 
 #include "cornerstone/mapping/grid_map.h"
 #include "cornerstone/scan/column_scan.h"
@@ -26,8 +27,10 @@ struct CameraView {
   TrinocularRig rig;
   Eigen::Isometry3d base_from_camera;
 };
-// The nearest pixel of every column whose height lies within the band, as ranges in even steps of bearing;
-// inserted at the pose.
+// Planar range of each column's nearest pixel whose height lies within the band; 0: none. The rule of
+// depthimage_to_laserscan.
+std::vector<double> nearestRanges(const cv::Mat1f& disparity_px, const CameraView& view);
+// The same as ranges in even steps of bearing, inserted at the pose.
 void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, const Pose2& map_from_base,
                          mrpt::maps::COccupancyGridMap2D& map);
 

@@ -3,57 +3,15 @@
 
 #include "bench.h"
 #include "peers.h"
+#include "range_bench.h"
 #include "tour.h"
+#include "views.h"
 
 namespace cornerstone::bench {
 namespace {
 
 constexpr int kViews = 12;
 constexpr int kRepeats = 5;
-const CameraFaultParams kFaults{2.0, 0.05, 0.1, 0};
-
-struct View {
-  StereoImages images;
-  cv::Mat1f depth_m;
-};
-
-// Poses evenly along robot a's route.
-std::vector<Pose2> posesOf(const World& world) {
-  SimulationParams params;
-  params.robots = {"a"};
-  std::vector<Pose2> route;
-  Simulation simulation(world, params);
-  while (!simulation.routesDone()) {
-    simulation.step();
-    route.push_back(simulation.frames(false).front().world_from_base);
-  }
-  std::vector<Pose2> poses;
-  for (int i = 0; i < kViews; ++i)
-    poses.push_back(route[route.size() * (2 * std::size_t(i) + 1) / (2 * kViews)]);
-  return poses;
-}
-
-std::vector<View> renderViews(const World& world, const std::vector<Pose2>& poses, const RigParams& rig) {
-  const double focal_px = focalLength(rig);
-  Renderer renderer(
-      world, {},
-      {{rig.width_px, rig.height_px}, focal_px, (rig.width_px - 1) / 2.0, (rig.height_px - 1) / 2.0});
-  CameraFaults faults(kFaults, focal_px, 1);
-  const auto base_from_cameras = baseFromCameras(rig);
-  std::vector<View> views;
-  for (const Pose2& pose : poses) {
-    std::array<cv::Mat1b, kCameraCount> images;
-    for (std::size_t camera = 0; camera < kCameraCount; ++camera) {
-      Eigen::Isometry3d at = spatial(pose) * base_from_cameras[camera];
-      at.linear() = at.linear() * faults.misalignment(camera);
-      images[camera] = faults.expose(renderer.render(at), camera);
-    }
-    views.push_back(
-        {{images[0], images[1], images[2]}, renderer.renderDepth(spatial(pose) * base_from_cameras[0])});
-  }
-  return views;
-}
-
 struct Score {
   std::size_t pixels = 0, answers = 0, off1 = 0, off2 = 0;
   std::vector<double> times_ms;
@@ -131,8 +89,9 @@ void stereoPart() {
       "- Both get images padded at the left, or they lose as many columns as disparities are searched.");
   printHead({"image", "matcher", "density", "bad 1 px", "bad 2 px", "ms", "time / StereoBM"});
   const World world = shippedWorld("office.yaml");
-  const std::vector<Pose2> poses = posesOf(world);
+  const std::vector<Pose2> poses = posesOf(world, kViews);
   for (const int width_px : {160, 320, 640}) compare(world, poses, width_px);
+  rangePart(world);
 }
 
 }  // namespace cornerstone::bench

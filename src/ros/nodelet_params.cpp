@@ -5,6 +5,7 @@ namespace cornerstone {
 void describe(ParamVisitor& visitor, TrinocularStereoParams& params) {
   visitor.field("images", params.images);
   visitor.field("third_camera", params.third_camera);
+  visitor.field("third_camera_silence_s", params.third_camera_silence_s);
   visitor.field("sync_tolerance_s", params.sync_tolerance_s);
   visitor.field("queue_size", params.queue_size);
   visitor.group("stereo", [&] { describe(visitor, params.stereo); });

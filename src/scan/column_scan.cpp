@@ -17,9 +17,15 @@ struct CameraPose {
   double yaw_rad = 0;
 };
 
+struct ScanInput {
+  const InverseDepthImage& image;
+  const CameraPose& camera;
+  const ScanParams& params;
+};
+
 // All points of one image column that lie in the height band.
-void collectColumn(const InverseDepthImage& image, const CameraPose& camera, int u, const ScanParams& params,
-                   std::vector<ColumnPixel>& pixels) {
+void collectColumn(const ScanInput& input, int u, std::vector<ColumnPixel>& pixels) {
+  const auto& [image, camera, params] = input;
   pixels.clear();
   const double x = (u - image.centre_x_px) / image.focal_px;
   for (int v = 0; v < image.inverse_depth.rows; ++v) {
@@ -130,7 +136,7 @@ RangeScan scanFromInverseDepth(const InverseDepthImage& image, const Eigen::Isom
   scan.correlated_beams = params.correlated_px;
   std::vector<ColumnPixel> pixels;
   for (int u = image.inverse_depth.cols - 1; u >= 0; --u) {
-    collectColumn(image, camera, u, params, pixels);
+    collectColumn({image, camera, params}, u, pixels);
     Beam beam = emptyBeam(image, camera, u);
     const auto surface = nearestSurface(pixels, image.common_sigma, params);
     if (surface) answer(*surface, camera, beam);

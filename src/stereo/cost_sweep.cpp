@@ -186,19 +186,23 @@ void CostSweep::keep(int row) {
   const short *seen_by_one = input_->views[0].seenOf(row),
               *seen_by_other = input_->views[input_->view_count - 1].seenOf(row);
   short *disparities_px = winners_.disparity_px[row], *costs = winners_.cost[row];
-  short *before = winners_.cost_before[row], *after = winners_.cost_after[row];
+  short *before = winners_.cost_before[row], *after = winners_.cost_after[row],
+        *chance = winners_.chance_cost[row];
+  std::uint8_t *own_costs = winners_.own_cost[row], *margins = winners_.margin[row],
+               *leads = winners_.lead[row];
+  const short *nearest = nearest_[row], *farthest = farthest_[row];
   for (int x = 0; x < size_px_.width; ++x, own += disparities_, sums += disparities_) {
     const PathWinner& winner = path_winners_[static_cast<std::size_t>(x)];
     const int i = winner.index;
     const bool seen = i < std::max(seen_by_one[x], seen_by_other[x]);
     disparities_px[x] = static_cast<short>(i + 1);
     costs[x] = seen ? static_cast<short>(sums[i]) : Winners::kNoCost;
-    before[x] = i > 0 ? static_cast<short>(sums[i - 1]) : farthest_(row, x);
-    after[x] = i + 1 < disparities_ ? static_cast<short>(sums[i + 1]) : nearest_(row, x);
-    winners_.chance_cost(row, x) = std::max(farthest_(row, x), nearest_(row, x));
-    winners_.own_cost(row, x) = own[i];
-    winners_.margin(row, x) = winner.margin;
-    winners_.lead(row, x) = winner.lead;
+    before[x] = i > 0 ? static_cast<short>(sums[i - 1]) : farthest[x];
+    after[x] = i + 1 < disparities_ ? static_cast<short>(sums[i + 1]) : nearest[x];
+    chance[x] = std::max(farthest[x], nearest[x]);
+    own_costs[x] = own[i];
+    margins[x] = winner.margin;
+    leads[x] = winner.lead;
   }
 }
 

@@ -9,40 +9,46 @@
 namespace cornerstone {
 namespace {
 
-constexpr int kStep_px = 1;  // neighbours on one surface differ by no more
+constexpr int kStep_px = 1;   // neighbours on one surface differ by no more
+constexpr int kAside_px = 3;  // a texture seen at a disparity that is off by so much no longer fits
+// The cost of noise in the 3 x 3 px that unrelated pixels cost 360 in.
+constexpr double kNoiseCost = 40;
+constexpr double kUnrelatedCost = 9 * kChanceCost / 2.0;
 
 // Mean over the cameras that see all of the 3 x 3 px; that of chance if none does.
 double costAround(const SweepInput& input, cv::Point at, int disparity_px) {
   const cv::Rect inner({1, 1}, input.reference->size() - cv::Size(2, 2));
+  if (!inner.contains(at)) return kUnrelatedCost;
   int sum = 0, cameras = 0;
   for (std::size_t v = 0; v < input.view_count; ++v) {
     const cv::Point seen = at + input.views[v].offsetAt(disparity_px);
-    if (!inner.contains(at) || !inner.contains(seen)) continue;
+    if (!inner.contains(seen)) continue;
     ++cameras;
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx)
-        sum += input.reference->costAt(at + cv::Point(dx, dy), input.views[v].features(),
-                                       seen + cv::Point(dx, dy));
+    sum += input.reference->costAround(at, input.views[v].features(), seen);
   }
-  return cameras > 0 ? static_cast<double>(sum) / cameras : 9 * kChanceCost / 2.0;
+  return cameras > 0 ? static_cast<double>(sum) / cameras : kUnrelatedCost;
 }
 
 }  // namespace
 
 bool EdgeCheck::standsOut(const Winners& winners, const SweepInput& input, cv::Point at,
                           double smallest_cost_ratio) const {
-  const int reach_px = input.window_px / 2 + 1;
-  const int own_px = winners.disparity_px(at);
+  const int reach_px = input.window_px / 2 + 1, own_px = winners.disparity_px(at);
   double own_cost = -1;
+  bool beside_none = false;
   for (const cv::Point step : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
     const cv::Point other = at + step * reach_px;
     if (other.x < 0 || other.y < 0 || other.x >= before_.cols || other.y >= before_.rows) continue;
     const int other_px = winners.disparity_px(other);
-    if (std::abs(other_px - own_px) <= kStep_px || before_(other) != 0) continue;
+    if (std::abs(other_px - own_px) <= kStep_px) continue;
     if (own_cost < 0) own_cost = costAround(input, at, own_px);
-    if (costAround(input, at, other_px) < smallest_cost_ratio * own_cost) return false;
+    beside_none = beside_none || before_(other) != 0;
+    if (before_(other) == 0 && costAround(input, at, other_px) < smallest_cost_ratio * own_cost) return false;
   }
-  return true;
+  if (!beside_none) return true;
+  const double smallest_cost = smallest_cost_ratio * own_cost + kNoiseCost;
+  return costAround(input, at, own_px + kAside_px) >= smallest_cost &&
+         costAround(input, at, std::max(own_px - kAside_px, 0)) >= smallest_cost;
 }
 
 void EdgeCheck::check(const Winners& winners, const SweepInput& input, double smallest_cost_ratio,

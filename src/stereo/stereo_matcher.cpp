@@ -39,6 +39,14 @@ void requireUsable(const StereoParams& params) {
 
 std::string textOf(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
+void reject(Disparity& disparity, int y, int x, Rejection why) {
+  disparity.disparity_px(y, x) = 0;
+  disparity.sigma_px(y, x) = 0;
+  disparity.rejection(y, x) = static_cast<std::uint8_t>(why);
+}
+
+}  // namespace
+
 void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
   const auto require = [&](const cv::Mat1b& image, const std::string& name) {
     if (image.empty()) throw InputError(name + " image is empty");
@@ -52,14 +60,6 @@ void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
   if (!images.top.empty() && !rig.top_shift)
     throw InputError("top image given, but the rig has no third camera");
 }
-
-void reject(Disparity& disparity, int y, int x, Rejection why) {
-  disparity.disparity_px(y, x) = 0;
-  disparity.sigma_px(y, x) = 0;
-  disparity.rejection(y, x) = static_cast<std::uint8_t>(why);
-}
-
-}  // namespace
 
 StereoMatcher::StereoMatcher(const StereoParams& params) : params_(params) { requireUsable(params); }
 
@@ -130,8 +130,11 @@ void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
     for (int x = 0; x < verdicts_.cols; ++x) {
       if (verdicts[x] == SurfaceFilter::kGood) continue;
       const bool flat = evidence[x] == static_cast<std::uint8_t>(Evidence::kFlat);
-      const Rejection weak = flat ? Rejection::kTexture : Rejection::kUniqueness;
-      reject(disparity, y, x, verdicts[x] == SurfaceFilter::kSmall ? Rejection::kSurface : weak);
+      const bool small = verdicts[x] == SurfaceFilter::kSmall;
+      reject(disparity, y, x,
+             flat    ? Rejection::kTexture
+             : small ? Rejection::kSurface
+                     : Rejection::kUniqueness);
     }
   }
 }

@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <opencv2/core/hal/intrin.hpp>
 
 #include "cornerstone/stereo/cost_noise.h"
+#include "cornerstone/stereo/sweep_kernels.h"
 
 namespace cornerstone {
 namespace {
 
-constexpr int kLanes = 4;
+constexpr int kSlack = 16;  // kernels work in whole vectors
+constexpr float kLeastWeight = 1e-6F;
 constexpr float kNone_px = -1e4F;
-// What the fit does not know is added to every sigma: slant within the windows, rectification, rounding. Half
-// of it is right for rendered images, all of it for photographs from calibrated cameras.
-constexpr float kModelSigma_px = 0.15F;
+// What the fit does not know is added to every sigma: slant within the windows, rectification, rounding.
+// Rendered images would do with half of it, photographs want up to 0.15.
+constexpr float kModelSigma_px = 0.1F;
 constexpr float kLargestStep_px = 1.0F;
 
 struct Fit {
@@ -33,15 +34,6 @@ void SubpixelRefiner::fitEach(const SubpixelInput& input) {
   const cv::Mat1b& rejection = *input.rejection;
   const Winners& winners = *input.winners;
   const CostNoise noise(input.window_px, input.cameras);
-  const cv::Size padded(rejection.cols + 2 * radius_px_ + kLanes, rejection.rows + 2 * radius_px_);
-  for (cv::Mat1f* plane : {&disparity_px_, &averaged_px_}) {
-    plane->create(padded);
-    plane->setTo(kNone_px);
-  }
-  for (cv::Mat1f* plane : {&weight_, &averaged_weight_}) {
-    plane->create(padded);
-    plane->setTo(0);
-  }
   for (int y = 0; y < rejection.rows; ++y) {
     const std::uint8_t* rejections = rejection[y];
     const short *before = winners.cost_before[y], *cost = winners.cost[y], *after = winners.cost_after[y];
@@ -58,46 +50,61 @@ void SubpixelRefiner::fitEach(const SubpixelInput& input) {
 }
 
 // Weighted mean of the pixels at -radius .. radius steps that are at most kLargestStep_px from the middle
-// one.
-void SubpixelRefiner::averageAlong(cv::Point step) {
-  const cv::v_float32x4 largest_step = cv::v_setall_f32(kLargestStep_px), least = cv::v_setall_f32(1e-12F);
+// one. `step` in floats.
+void SubpixelRefiner::averageAlong(std::ptrdiff_t step) {
+  AverageRow row;
+  row.step = step;
+  row.radius = radius_px_;
+  row.width = disparity_px_.cols - 2 * radius_px_ - kSlack;
+  row.largest_step = kLargestStep_px;
   for (int y = radius_px_; y < disparity_px_.rows - radius_px_; ++y) {
-    for (int x = radius_px_; x + radius_px_ + kLanes <= disparity_px_.cols; x += kLanes) {
-      const cv::v_float32x4 middle = cv::v_load(&disparity_px_(y, x));
-      cv::v_float32x4 sum = cv::v_setzero_f32(), weights = cv::v_setzero_f32();
-      for (int i = -radius_px_; i <= radius_px_; ++i) {
-        const int ny = y + i * step.y, nx = x + i * step.x;
-        const cv::v_float32x4 ahead = cv::v_load(&disparity_px_(ny, nx)) - middle;
-        const cv::v_float32x4 weight = cv::v_load(&weight_(ny, nx)) & (cv::v_abs(ahead) <= largest_step);
-        sum += weight * ahead;
-        weights += weight;
-      }
-      cv::v_store(&averaged_px_(y, x), middle + sum / cv::v_max(weights, least));
-      cv::v_store(&averaged_weight_(y, x), weights);
-    }
+    row.values = disparity_px_[y] + radius_px_;
+    row.weights = weight_[y] + radius_px_;
+    row.means = averaged_px_[y] + radius_px_;
+    row.weight_sums = averaged_weight_[y] + radius_px_;
+    sweepKernels().average(row);
   }
   std::swap(disparity_px_, averaged_px_);
   std::swap(weight_, averaged_weight_);
+}
+
+void SubpixelRefiner::prepare(cv::Size size) {
+  const cv::Size padded(size.width + 2 * radius_px_ + kSlack, size.height + 2 * radius_px_);
+  if (disparity_px_.size() == padded) return;
+  for (cv::Mat1f* plane : {&disparity_px_, &averaged_px_}) {
+    plane->create(padded);
+    plane->setTo(kNone_px);
+  }
+  for (cv::Mat1f* plane : {&weight_, &averaged_weight_}) {
+    plane->create(padded);
+    plane->setTo(0);
+  }
 }
 
 void SubpixelRefiner::refine(const SubpixelInput& input, const SubpixelParams& params,
                              cv::Mat1f& disparity_px, cv::Mat1f& sigma_px) {
   const cv::Size size = input.rejection->size();
   radius_px_ = params.support_px / 2;
+  prepare(size);
   fitEach(input);
-  const float each_way = static_cast<float>(2 * radius_px_ + 1);
+  const float each_way = static_cast<float>(2 * radius_px_ + 1), support = each_way * each_way;
   if (radius_px_ > 0) {
-    averageAlong({1, 0});
-    averageAlong({0, 1});
+    averageAlong(1);
+    averageAlong(disparity_px_.cols);
   }
   disparity_px.create(size);
   sigma_px.create(size);
   for (int y = 0; y < size.height; ++y) {
+    const std::uint8_t* rejections = (*input.rejection)[y];
+    const float *means = disparity_px_[y + radius_px_] + radius_px_,
+                *weights = weight_[y + radius_px_] + radius_px_;
+    float *disparities = disparity_px[y], *sigmas = sigma_px[y];
     for (int x = 0; x < size.width; ++x) {
-      const bool answered = (*input.rejection)(y, x) == 0;
-      const float weight = weight_(y + radius_px_, x + radius_px_) / (each_way * each_way);
-      disparity_px(y, x) = answered ? disparity_px_(y + radius_px_, x + radius_px_) : 0;
-      sigma_px(y, x) = answered ? std::sqrt(1 / weight + kModelSigma_px * kModelSigma_px) : 0;
+      const bool answered = rejections[x] == 0;
+      // Neighbours share most of their windows: averaging leaves the variance of one as it was.
+      const float variance = support / std::max(weights[x], kLeastWeight) + kModelSigma_px * kModelSigma_px;
+      disparities[x] = answered ? means[x] : 0;
+      sigmas[x] = answered ? std::sqrt(variance) : 0;
     }
   }
 }

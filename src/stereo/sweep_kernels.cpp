@@ -10,13 +10,17 @@ namespace cornerstone {
 const SweepKernels& sweepKernelsAvx2();
 #endif
 
+const SweepKernels& plainSweepKernels() {
+  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown, average};
+  return plain;
+}
+
 const SweepKernels& sweepKernels() {
-  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown};
 #ifdef CORNERSTONE_WITH_AVX2
   static const bool has_avx2 = cv::checkHardwareSupport(CV_CPU_AVX2);
   if (has_avx2) return sweepKernelsAvx2();
 #endif
-  return plain;
+  return plainSweepKernels();
 }
 
 }  // namespace cornerstone

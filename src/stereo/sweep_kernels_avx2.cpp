@@ -11,7 +11,7 @@ namespace cornerstone {
 
 const SweepKernels& sweepKernelsAvx2();
 const SweepKernels& sweepKernelsAvx2() {
-  static const SweepKernels kernels{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown};
+  static const SweepKernels kernels{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown, average};
   return kernels;
 }
 

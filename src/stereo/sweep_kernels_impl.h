@@ -121,37 +121,49 @@ class PathStep {
   Bytes lowest_before_, limit_, slope_penalty_;
 };
 
-// A path's pixels in their order; `before` and `here` are the path costs of two pixels, ending in 255s.
-inline int stepAlong(const PathStep& step, const std::uint8_t* before, const std::uint8_t* costs,
-                     std::uint8_t* here, int disparities) {
-  Bytes lowest = bytesOf(255);
-  for (int i = 0; i < disparities; i += kLanes) {
-    const Bytes sum = step(cv::vx_load(before + i - 1), cv::vx_load(before + i), cv::vx_load(before + i + 1),
-                           cv::vx_load(costs + i));
-    cv::v_store(here + i, sum);
-    lowest = cv::v_min(lowest, sum);
+// One path through a row; `here` are the path costs of the pixel reached.
+class Path {
+ public:
+  Path(const PathRow& row, int first, std::uint8_t* here)
+      : row_(row), slope_penalty_(bytesOf(row.slope_penalty)), here_(here) {
+    // Nothing before the first pixel: its own costs.
+    lowest_ = take(PathStep(0, 0, slope_penalty_), first, here);
   }
-  here[-1] = here[disparities] = 255;
-  return cv::v_reduce_min(lowest);
-}
+  // On to a neighbouring column, whose costs are to be written `by` further.
+  void go(int column, int jump_penalty, std::ptrdiff_t by) {
+    lowest_ = take(PathStep(lowest_, jump_penalty, slope_penalty_), column, here_ + by);
+    here_ += by;
+  }
+
+ private:
+  int take(const PathStep& step, int column, std::uint8_t* out) const {
+    const std::uint8_t* costs = row_.costs + static_cast<std::ptrdiff_t>(column) * row_.disparities;
+    Bytes lowest = bytesOf(255);
+    for (int i = 0; i < row_.disparities; i += kLanes) {
+      const Bytes sum = step(cv::vx_load(here_ + i - 1), cv::vx_load(here_ + i), cv::vx_load(here_ + i + 1),
+                             cv::vx_load(costs + i));
+      cv::v_store(out + i, sum);
+      lowest = cv::v_min(lowest, sum);
+    }
+    out[-1] = out[row_.disparities] = 255;
+    return cv::v_reduce_min(lowest);
+  }
+
+  const PathRow& row_;
+  Bytes slope_penalty_;
+  std::uint8_t* here_;
+  int lowest_ = 0;
+};
 
 // Both paths together: each waits for its own last pixel.
 void pathsAlong(const PathRow& row) {
-  const int n = row.disparities, last = row.width - 1;
-  const std::ptrdiff_t stride = n + 2;
-  const Bytes slope_penalty = bytesOf(row.slope_penalty);
-  std::uint8_t *left = row.from_left + 1, *right = row.from_right + 1 + last * stride;
-  const PathStep start(0, 0, slope_penalty);  // nothing before the first pixel: its own costs
-  int lowest_left = stepAlong(start, left, row.costs, left, n);
-  int lowest_right = stepAlong(start, right, row.costs + static_cast<std::ptrdiff_t>(last) * n, right, n);
+  const int last = row.width - 1;
+  const std::ptrdiff_t stride = row.disparities + 2;
+  Path left(row, 0, row.from_left + 1), right(row, last, row.from_right + 1 + last * stride);
   for (int x = 1; x < row.width; ++x) {
     const int mirror = last - x;
-    lowest_left = stepAlong({lowest_left, row.jump_ahead[x], slope_penalty}, left,
-                            row.costs + static_cast<std::ptrdiff_t>(x) * n, left + stride, n);
-    lowest_right = stepAlong({lowest_right, row.jump_ahead[mirror + 1], slope_penalty}, right,
-                             row.costs + static_cast<std::ptrdiff_t>(mirror) * n, right - stride, n);
-    left += stride;
-    right -= stride;
+    left.go(x, row.jump_ahead[x], stride);
+    right.go(mirror, row.jump_ahead[mirror + 1], -stride);
   }
 }
 
@@ -206,6 +218,23 @@ void pathDown(const PathRow& row) {
     }
     row.lowest_above[x] = static_cast<std::uint8_t>(cv::v_reduce_min(lowest));
     row.winners[x] = winnerOf(row, costs, cv::v_reduce_min(lowest_sum), steps);
+  }
+}
+
+void average(const AverageRow& row) {
+  using Floats = cv::v_float32;
+  const Floats largest_step = cv::vx_setall_f32(row.largest_step), least = cv::vx_setall_f32(1e-12F);
+  for (int x = 0; x < row.width; x += Floats::nlanes) {
+    const Floats middle = cv::vx_load(row.values + x);
+    Floats sum = cv::vx_setzero_f32(), weights = cv::vx_setzero_f32();
+    for (int i = -row.radius; i <= row.radius; ++i) {
+      const Floats ahead = cv::vx_load(row.values + x + i * row.step) - middle;
+      const Floats weight = cv::vx_load(row.weights + x + i * row.step) & (cv::v_abs(ahead) <= largest_step);
+      sum += weight * ahead;
+      weights += weight;
+    }
+    cv::v_store(row.means + x, middle + sum / cv::v_max(weights, least));
+    cv::v_store(row.weight_sums + x, weights);
   }
 }
 

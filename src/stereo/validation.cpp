@@ -55,7 +55,7 @@ void Validator::checkWinners(const Winners& winners, const SweepInput& input, co
                            (disparity_px >= last_px && after[x] < costs[x]) || disparity_px > last_px;
       Rejection verdict = outward ? Rejection::kRange : Rejection::kNone;
       const int gain = std::max(chance[x] - costs[x], 0);
-      const bool flat = static_cast<float>(gain) < flat_gain * static_cast<float>(chance[x]);
+      const bool flat = static_cast<float>(gain) <= flat_gain * static_cast<float>(chance[x]);
       if (margins[x] < smallest_margin) verdict = flat ? Rejection::kTexture : Rejection::kUniqueness;
       if (costs[x] == Winners::kNoCost) verdict = Rejection::kOutside;
       rejections[x] = codeOf(verdict);
@@ -68,34 +68,51 @@ void Validator::checkWinners(const Winners& winners, const SweepInput& input, co
   }
 }
 
+namespace {
+
+// Where a secondary camera sees reference pixels, as an index into its image.
+class Projection {
+ public:
+  Projection(const SecondaryView& view, cv::Size size, std::vector<cv::Point>& offsets)
+      : size_(size), offsets_(offsets) {
+    offsets_.clear();
+    for (int d = 0; d <= view.disparities(); ++d) offsets_.push_back(view.offsetAt(d));
+  }
+  int of(int x, int y, int disparity_px) const {  // -1: not in the image
+    const cv::Point offset = offsets_[static_cast<std::size_t>(disparity_px)];
+    const int sx = x + offset.x, sy = y + offset.y;
+    const bool inside = static_cast<unsigned>(sx) < static_cast<unsigned>(size_.width) &&
+                        static_cast<unsigned>(sy) < static_cast<unsigned>(size_.height);
+    return inside ? sy * size_.width + sx : -1;
+  }
+
+ private:
+  cv::Size size_;
+  std::vector<cv::Point>& offsets_;
+};
+
+}  // namespace
+
 void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                                cv::Mat1b& rejection) {
-  const int rows = rejection.rows, cols = rejection.cols;
+  const Projection seen_at(view, rejection.size(), offsets_);
+  constexpr int kCostUnit = 1 << 16;  // a claim is its cost, and below it its disparity
   claims_.create(rejection.size());
   claims_.setTo(std::numeric_limits<int>::max());
   int* claims = claims_[0];
-  offsets_.clear();
-  for (int d = 0; d <= view.disparities(); ++d) offsets_.push_back(view.offsetAt(d));
-  // Index of the secondary pixel that sees reference pixel (x, y), or -1.
-  const auto seenBy = [&](int x, int y, int disparity_px) {
-    const cv::Point offset = offsets_[static_cast<std::size_t>(disparity_px)];
-    const int sx = x + offset.x, sy = y + offset.y;
-    return sx >= 0 && sx < cols && sy >= 0 && sy < rows ? sy * cols + sx : -1;
-  };
-  constexpr int kCostUnit = 1 << 16;  // a claim is its cost, and below it its disparity
-  for (int y = 0; y < rows; ++y) {
+  for (int y = 0; y < rejection.rows; ++y) {
     const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y];
-    for (int x = 0; x < cols; ++x) {
-      const int seen = seenBy(x, y, disparities_px[x]);
+    for (int x = 0; x < rejection.cols; ++x) {
+      const int seen = seen_at.of(x, y, disparities_px[x]);
       if (seen >= 0) claims[seen] = std::min(claims[seen], costs[x] * kCostUnit + disparities_px[x]);
     }
   }
-  for (int y = 0; y < rows; ++y) {
+  for (int y = 0; y < rejection.rows; ++y) {
     const short* disparities_px = winners.disparity_px[y];
     std::uint8_t* rejections = rejection[y];
-    for (int x = 0; x < cols; ++x) {
+    for (int x = 0; x < rejection.cols; ++x) {
       if (rejections[x] != codeOf(Rejection::kNone)) continue;
-      const int seen = seenBy(x, y, disparities_px[x]);
+      const int seen = seen_at.of(x, y, disparities_px[x]);
       if (seen >= 0 && std::abs(claims[seen] % kCostUnit - disparities_px[x]) > tolerance_px)
         rejections[x] = codeOf(Rejection::kLeftRight);
     }

@@ -184,20 +184,35 @@ class BadMessages(unittest.TestCase):
         rospy.sleep(0.2)
         self.assert_lives()
 
-    def start_stereo(self):
-        """Two cameras: publishers of their calibrations, and a function that sends a pair of images."""
-        self.start("trinocular_stereo", "stereo", third_camera=False)
-        cameras = ("reference", "right")
+    def start_stereo(self, cameras=("reference", "right"), **changes):
+        """Publishers of the cameras' calibrations, and a function that sends a set of images."""
+        self.start("trinocular_stereo", "stereo", third_camera=len(cameras) > 2, **changes)
         infos = [self.publisher(f"/a/{c}/camera_info", CameraInfo) for c in cameras]
         images = [self.publisher(f"/a/{c}/image_rect", Image) for c in cameras]
 
-        def send(*pair):
+        def send(*members):
             stamp = rospy.Time.now()
-            for publisher, message in zip(images, pair):
+            for publisher, message in zip(images, members):
                 message.header.stamp = stamp
                 publisher.publish(message)
             rospy.sleep(0.06)
         return infos, send
+
+    def test_stereo_goes_on_when_the_third_camera_stops(self):
+        infos, send = self.start_stereo(("reference", "right", "top"), third_camera_silence_s=0.3)
+        top = info()
+        top.P = [*top.P[:7], FOCAL_PX * BASELINE_M, *top.P[8:]]
+        for publisher, message in zip(infos, (info(), info(shift=-FOCAL_PX * BASELINE_M), top)):
+            publisher.publish(message)
+        rospy.sleep(0.2)
+        self.processed_after(lambda: send(image(), image(), image()))
+        self.assertNotEqual(self.diagnostics.of(self.stage)["level"], 2)
+        rospy.sleep(0.4)
+        self.processed_after(lambda: send(image(), image()))
+        chain.wait_until(lambda: "/a/top is silent" in self.diagnostics.of(self.stage)["message"], "word of the top camera", 10)
+        self.processed_after(lambda: send(image(), image(), image()))
+        chain.wait_until(lambda: self.diagnostics.of(self.stage)["level"] != 2, "the complaint to end", 10)
+        self.assert_lives()
 
     def test_stereo_images_before_their_calibrations(self):
         infos, send = self.start_stereo()

@@ -54,6 +54,13 @@ TEST(GradientFeatures, CostsOfAPlaneAreThoseOfItsPixels) {
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x) {
       const bool seen = x >= 3 && y < 10;
+      if (x == 12 && y == 5) {
+        int around = 0;
+        for (int dy = -1; dy <= 1; ++dy)
+          for (int dx = -1; dx <= 1; ++dx)
+            around += here.costAt(cv::Point(x + dx, y + dy), there, cv::Point(x + dx, y + dy) + offset);
+        EXPECT_EQ(here.costAround({x, y}, there, cv::Point(x, y) + offset), around);
+      }
       ASSERT_EQ(costs(y, x), seen ? here.costAt({x, y}, there, cv::Point(x, y) + offset) : 255)
           << x << ' ' << y;
     }

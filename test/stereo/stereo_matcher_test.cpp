@@ -82,7 +82,7 @@ TEST(StereoMatcher, BareWallIsRefused) {
     StereoImages images{photographed(wall, 2, 1, random), photographed(wall, 2, 1, random),
                         photographed(wall, 2, 1, random)};
     EXPECT_EQ(shareOf(matched(images), Rejection::kNone), 0) << "three cameras, seed " << seed;
-    EXPECT_GT(shareOf(matched(images), Rejection::kTexture), 0.65) << "three cameras, seed " << seed;
+    EXPECT_GT(shareOf(matched(images), Rejection::kTexture), 0.5) << "three cameras, seed " << seed;
     images.top.release();
     EXPECT_EQ(shareOf(matched(images), Rejection::kNone), 0) << "two cameras, seed " << seed;
   }
@@ -161,6 +161,18 @@ TEST(StereoMatcher, BuffersOfOneFrameDoNotReachTheNext) {
   const Disparity fresh = matched(second);
   EXPECT_EQ(cv::norm(disparity.disparity_px, fresh.disparity_px, cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(disparity.sigma_px, fresh.sigma_px, cv::NORM_INF), 0);
+}
+
+TEST(StereoMatcher, ImagesThatDoNotFitTheRigMatchNowhere) {
+  cv::RNG random(14);
+  StereoImages images = viewsOf(Texture(kSize, 1, 30, random), {7, 0}, {2, 1}, random);
+  EXPECT_GT(matchedShare(matched(images)).value(), 0.9);
+  std::swap(images.reference, images.right);  // the top camera contradicts, too
+  EXPECT_LT(matchedShare(matched(images)).value(), 0.05);
+  images.top.release();
+  EXPECT_LT(matchedShare(matched(images)).value(), 0.05);
+  const cv::Mat1b bare(kSize, 90);
+  EXPECT_FALSE(matchedShare(matched({bare, bare, {}})));
 }
 
 TEST(StereoMatcher, NearerThanTheRangeIsRefused) {

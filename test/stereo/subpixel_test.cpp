@@ -57,7 +57,7 @@ TEST(Subpixel, SlantedSurfaceKeepsItsSlope) {
   EXPECT_LT(figures.rms_px, 0.1);
 }
 
-// Stronger texture than this is more exact than the floor of 0.15 px that slant and rectification are given.
+// Stronger texture than this is more exact than the floor of 0.1 px that slant and rectification are given.
 TEST(Subpixel, SigmaIsHonestOnWeakTexture) {
   for (const double contrast : {1.5, 2.0, 3.0}) {
     const ErrorFigures figures = figuresOf({3.3, 0.01}, 1.5, contrast);

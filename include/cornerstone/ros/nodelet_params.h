@@ -18,6 +18,8 @@ namespace cornerstone {
 struct TrinocularStereoParams {       // config/stereo.yaml
   std::string images = "image_rect";  // or image_raw: rectified here with each camera's calibration
   bool third_camera = true;           // false: reference and right only
+  // The third camera silent for so long: the others go on alone. 0: never. Some ten images at 10 Hz.
+  double third_camera_silence_s = 1.0;
   // Largest difference between the stamps of one set; 0: equal stamps. Cameras with a common trigger differ
   // by less than a millisecond; at 1 m/s and 3 m range 10 ms already shift the image by a quarter of a pixel.
   double sync_tolerance_s = 0.0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "cornerstone/stereo/trinocular_rig.h"
 
@@ -26,5 +27,10 @@ struct Disparity {
   cv::Mat1b rejection;     // Rejection
   TrinocularRig rig;
 };
+
+// Share of the pixels with texture that have an answer; empty: hardly any has texture. Near 1 as a rule. When
+// the images do not fit the rig (cameras swapped, another rig's calibration, images of different instants),
+// pixels with texture match nowhere.
+std::optional<double> matchedShare(const Disparity& disparity);
 
 }  // namespace cornerstone

@@ -1,7 +1,9 @@
 // Foreground fattening: a window half over a depth edge matches whichever side has more texture, so surfaces
 // with texture grow over their surroundings. Beside a step of the winners a pixel therefore has to show that
-// it belongs to its own side: in the 3 x 3 px around it the disparity of the other side must cost clearly
-// more than its own.
+// it belongs to its own side. In the 3 x 3 px around it
+// - the disparity of the other side must cost clearly more than its own, where that side has an answer;
+// - disparities a little off must cost clearly more than its own, where it has none: the pixel itself then
+//   shows something, and is no bare wall beside a textured thing.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -12,8 +14,7 @@ namespace cornerstone {
 
 class EdgeCheck {
  public:
-  // Turns kNone into kUniqueness in `rejection` where the other side's cost is below `smallest_cost_ratio`
-  // times the pixel's own. Another side counts only where its own winner holds (kNone).
+  // Turns kNone into kUniqueness in `rejection` where "clearly more" is less than `smallest_cost_ratio`.
   void check(const Winners& winners, const SweepInput& input, double smallest_cost_ratio,
              cv::Mat1b& rejection);
 

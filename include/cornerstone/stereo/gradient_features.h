@@ -25,11 +25,14 @@ class GradientFeatures {
   cv::Size size() const { return channels_[0].size(); }
   // Sum over the channels of the absolute differences.
   int costAt(cv::Point here, const GradientFeatures& other, cv::Point there) const;
+  // The same over the 3 x 3 px around each, which lie in the images.
+  int costAround(cv::Point here, const GradientFeatures& other, cv::Point there) const;
   // The same for all pixels whose partner at +offset lies in the image; other costs stay as they are.
   void costs(const GradientFeatures& other, cv::Point offset, cv::Mat1b& costs) const;
 
  private:
   std::array<cv::Mat1b, kChannels> channels_;
+  cv::Mat4b together_;  // the same channels pixel by pixel, and one row more for reading whole vectors
   cv::Mat1b smooth_, padded_, padded_smooth_;  // kept, so that nothing is allocated frame by frame
 };
 

@@ -22,6 +22,9 @@ struct StereoImages {  // rectified grey images of one instant and of one size
   cv::Mat1b top;  // empty: two cameras
 };
 
+// Throws InputError when the images are empty or differ in size from each other or from the rig.
+void requireUsable(const StereoImages& images, const TrinocularRig& rig);
+
 struct StereoParams {
   // Largest disparity searched; sets the nearest range f B / d: 0.3 m for the default rig (f 80 px,
   // B 0.12 m).
@@ -31,9 +34,9 @@ struct StereoParams {
   // 480 px, 7 from there on.
   int window_px = 0;
   // Between a pixel's best and second-best disparity, in costs of a pixel that has nothing to do with the
-  // other, summed over all paths: patterns and most of bare walls fail here. Half: a tenth more wrong answers
-  // on photographs; double: two in a hundred fewer answers there.
-  double smallest_margin_share = 0.5;
+  // other, summed over all paths: patterns and most of bare walls fail here. Half: a twentieth more wrong
+  // answers on photographs; double: a hundredth fewer answers there.
+  double smallest_margin_share = 0.3;
   // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px
   // (else surfaces grow over their surroundings). 1: any better; 3: nearly every pixel beside an edge is
   // dropped, thin things with it.
@@ -68,7 +71,7 @@ void describe(ParamVisitor& visitor, StereoParams& params);
 class StereoMatcher {
  public:
   explicit StereoMatcher(const StereoParams& params);  // throws InputError on parameters out of range
-  // Throws InputError when the images are empty or differ in size from each other or from the rig.
+  // Throws InputError as requireUsable.
   Disparity match(const StereoImages& images, const TrinocularRig& rig);
   // The same into an answer that is used again and again.
   void match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);

@@ -32,7 +32,8 @@ class SubpixelRefiner {
 
  private:
   void fitEach(const SubpixelInput& input);
-  void averageAlong(cv::Point step);
+  void prepare(cv::Size size);
+  void averageAlong(std::ptrdiff_t step);
 
   int radius_px_ = 0;  // of the support, and the width of the planes' borders
   // With a border; disparity far below zero and weight 0 where there is none.

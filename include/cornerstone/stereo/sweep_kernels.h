@@ -60,6 +60,15 @@ struct PathRow {
   PathWinner* winners = nullptr;
 };
 
+// Weighted means over a line of values around each of a row, of those within a step of the middle one.
+struct AverageRow {
+  const float *values = nullptr, *weights = nullptr;  // of the row
+  std::ptrdiff_t step = 0;                            // from one value of a line to the next
+  int radius = 0, width = 0;                          // the line: 2 radius + 1 values
+  float largest_step = 0;
+  float *means = nullptr, *weight_sums = nullptr;
+};
+
 struct SweepKernels {
   int lanes;  // disparities are padded to a multiple
   void (*pairCosts)(const PairCostRow& row, std::uint8_t* costs);
@@ -71,8 +80,10 @@ struct SweepKernels {
   void (*pathsAlong)(const PathRow& row);
   // Takes the path from above on to this row, and chooses the winners by the sum of all paths.
   void (*pathDown)(const PathRow& row);
+  void (*average)(const AverageRow& row);
 };
 
-const SweepKernels& sweepKernels();
+const SweepKernels& sweepKernels();       // the fastest that this processor has
+const SweepKernels& plainSweepKernels();  // those of every processor of the architecture
 
 }  // namespace cornerstone

@@ -1,0 +1,138 @@
+// The paths of the search against Hirschmueller's equation, number by number, for every set of kernels.
+#include "cornerstone/stereo/sweep_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace cornerstone {
+namespace {
+
+constexpr int kWidth = 23, kDisparities = 64, kStride = kDisparities + 2, kRoom = 64;
+constexpr int kSlope = 20;
+
+using Costs = std::vector<int>;  // of one pixel
+
+Costs step(const Costs& before, const std::uint8_t* costs, int jump) {
+  const int lowest = *std::min_element(before.begin(), before.end());
+  Costs here;
+  for (int i = 0; i < kDisparities; ++i) {
+    const auto at = [&](int k) {
+      return k < 0 || k >= kDisparities ? 255 : before[static_cast<std::size_t>(k)];
+    };
+    const int best = std::min({at(i), at(i - 1) + kSlope, at(i + 1) + kSlope, lowest + jump});
+    here.push_back(costs[i] + best - lowest);
+  }
+  return here;
+}
+
+struct Row {
+  cv::Mat1b costs{cv::Size(kWidth * kDisparities + kRoom, 1)};
+  cv::Mat1b jump_ahead{cv::Size(kWidth, 1)}, jump_down{cv::Size(kWidth, 1)};
+  explicit Row(std::uint64_t seed) {
+    cv::RNG random(seed);
+    random.fill(costs, cv::RNG::UNIFORM, 0, 60);
+    random.fill(jump_ahead, cv::RNG::UNIFORM, 20, 60);
+    random.fill(jump_down, cv::RNG::UNIFORM, 20, 60);
+  }
+  const std::uint8_t* of(int x) const { return costs[0] + x * kDisparities; }
+};
+
+class Paths {
+ public:
+  Paths() {
+    above_.setTo(0);
+    for (int x = 0; x < kWidth; ++x) above_(0, x * kStride) = above_(0, (x + 1) * kStride - 1) = 255;
+    lowest_.setTo(0);
+  }
+  PathRow rowFor(const Row& row) {
+    PathRow paths;
+    paths.costs = row.costs[0];
+    paths.jump_ahead = row.jump_ahead[0];
+    paths.jump_down = row.jump_down[0];
+    paths.width = kWidth;
+    paths.disparities = kDisparities;
+    paths.slope_penalty = kSlope;
+    paths.from_left = left_[0];
+    paths.from_right = right_[0];
+    paths.from_above = above_[0];
+    paths.lowest_above = lowest_[0];
+    paths.sums = sums_[0];
+    paths.winners = winners.data();
+    return paths;
+  }
+  int left(int x, int i) const { return left_(0, x * kStride + 1 + i); }
+  int right(int x, int i) const { return right_(0, x * kStride + 1 + i); }
+  int above(int x, int i) const { return above_(0, x * kStride + 1 + i); }
+
+  std::vector<PathWinner> winners = std::vector<PathWinner>(kWidth);
+
+ private:
+  cv::Mat1b left_{cv::Size(kWidth * kStride + kRoom, 1)}, right_{cv::Size(kWidth * kStride + kRoom, 1)},
+      above_{cv::Size(kWidth * kStride + kRoom, 1)}, lowest_{cv::Size(kWidth, 1)},
+      sums_{cv::Size(kDisparities + kRoom, 1)};
+};
+
+class Kernels : public testing::TestWithParam<const SweepKernels*> {};
+
+TEST_P(Kernels, FollowTheEquationAlongEachPath) {
+  const SweepKernels& kernels = *GetParam();
+  ASSERT_EQ(kDisparities % kernels.lanes, 0);
+  Paths paths;
+  std::vector<Costs> above(kWidth, Costs(kDisparities, 0));
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {  // rows from top to bottom
+    const Row row(seed);
+    const PathRow input = paths.rowFor(row);
+    kernels.pathsAlong(input);
+    kernels.pathDown(input);
+    Costs left(kDisparities, 0), right(kDisparities, 0);
+    for (int x = 0; x < kWidth; ++x) {
+      left = step(left, row.of(x), x == 0 ? 0 : row.jump_ahead(0, x));
+      above[static_cast<std::size_t>(x)] =
+          step(above[static_cast<std::size_t>(x)], row.of(x), row.jump_down(0, x));
+      for (int i = 0; i < kDisparities; ++i) {
+        ASSERT_EQ(paths.left(x, i), left[static_cast<std::size_t>(i)]) << x << ' ' << i;
+        ASSERT_EQ(paths.above(x, i), above[static_cast<std::size_t>(x)][static_cast<std::size_t>(i)])
+            << x << ' ' << i;
+      }
+    }
+    for (int x = kWidth - 1; x >= 0; --x) {
+      right = step(right, row.of(x), x == kWidth - 1 ? 0 : row.jump_ahead(0, x + 1));
+      for (int i = 0; i < kDisparities; ++i)
+        ASSERT_EQ(paths.right(x, i), right[static_cast<std::size_t>(i)]) << x << ' ' << i;
+    }
+  }
+}
+
+TEST_P(Kernels, ChooseTheLowestSumAndTellItsMarginAndLead) {
+  const SweepKernels& kernels = *GetParam();
+  const Row row(4);
+  Paths paths;
+  const PathRow input = paths.rowFor(row);
+  kernels.pathsAlong(input);
+  kernels.pathDown(input);
+  for (int x = 0; x < kWidth; ++x) {
+    const auto sumAt = [&](int i) {
+      return std::min(255, paths.left(x, i) + paths.right(x, i) + paths.above(x, i));
+    };
+    int best = 0;
+    for (int i = 1; i < kDisparities; ++i) best = sumAt(i) < sumAt(best) ? i : best;
+    int second = 255, rival = 255;
+    for (int i = 0; i < kDisparities; ++i) {
+      if (std::abs(i - best) <= 1) continue;
+      second = std::min(second, sumAt(i));
+      rival = std::min<int>(rival, row.of(x)[i]);
+    }
+    const PathWinner& winner = paths.winners[static_cast<std::size_t>(x)];
+    EXPECT_EQ(winner.index, best) << x;
+    EXPECT_EQ(winner.margin, second - sumAt(best)) << x;
+    EXPECT_EQ(winner.lead, std::max(0, rival - row.of(x)[best])) << x;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfThisProcessor, Kernels, testing::Values(&plainSweepKernels(), &sweepKernels()));
+
+}  // namespace
+}  // namespace cornerstone
