@@ -13,6 +13,7 @@ namespace cornerstone::bench {
 void stereoPart();
 void mappingPart();
 void registrationPart();
+void registrationLimitsPart();
 
 inline double elapsed_ms(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();

@@ -10,6 +10,7 @@ int main() {
     cornerstone::bench::stereoPart();
     cornerstone::bench::mappingPart();
     cornerstone::bench::registrationPart();
+    cornerstone::bench::registrationLimitsPart();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench: %s\n", error.what());
     return 1;

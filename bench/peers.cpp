@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <list>
+#include <opencv2/features2d.hpp>
 #include <vector>
 
 namespace cornerstone::bench {
@@ -125,21 +126,72 @@ mrpt::maps::CMultiMetricMap withPoints(const GridMap& map, bool with_points) {
 
 }  // namespace
 
-std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, bool with_points) {
+std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, MrptAligner kind) {
   // The aligner keeps features by the address of a map: every map is kept, so that no address comes twice.
   static std::list<mrpt::maps::CMultiMetricMap> kept;
+  const bool with_points = kind != MrptAligner::kGrids;
   const auto& m1 = kept.emplace_back(withPoints(reference, with_points));
   const auto& m2 = kept.emplace_back(withPoints(current, with_points));
   mrpt::math::CMatrixDouble33 covariance;
   covariance.setDiagonal(std::vector<double>{1e4, 1e4, 1e2});
   mrpt::slam::CGridMapAligner aligner;
   aligner.setMinLoggingLevel(mrpt::system::LVL_ERROR);
+  if (kind == MrptAligner::kMoreFeatures) {
+    aligner.options.featsPerSquareMeter = 0.05F;
+    aligner.options.ransac_minSetSizeRatio = 0.1F;
+  }
   const auto answer = aligner.AlignPDF(&m1, &m2, mrpt::poses::CPosePDFGaussian({}, covariance));
   const auto modes = std::dynamic_pointer_cast<mrpt::poses::CPosePDFSOG>(answer);
   if (!modes || modes->empty()) return {};
   const auto best = std::max_element(modes->begin(), modes->end(),
                                      [](const auto& a, const auto& b) { return a.log_w < b.log_w; });
   return Pose2{best->mean.x(), best->mean.y(), best->mean.phi()};
+}
+
+namespace {
+
+cv::Mat1b greyOf(const GridMap& map) {
+  cv::Mat1b grey(map.occupied.size());
+  map.occupied.convertTo(grey, CV_8U, -255, 255);
+  return grey;
+}
+
+// Metres of a pixel of greyOf, whose rows grow with y.
+Eigen::Vector2d metresOf(const GridMap& map, const Eigen::Vector2d& pixel) {
+  return map.geometry.toMetres(pixel);
+}
+
+}  // namespace
+
+std::optional<Pose2> alignFeatures(const GridMap& reference, const GridMap& current) {
+  constexpr std::size_t kMinInliers = 12;
+  constexpr float kRatio = 0.8F;
+  const auto detector = cv::AKAZE::create();
+  std::vector<cv::KeyPoint> there, here;
+  cv::Mat described_there, described_here;
+  detector->detectAndCompute(greyOf(reference), cv::noArray(), there, described_there);
+  detector->detectAndCompute(greyOf(current), cv::noArray(), here, described_here);
+  if (there.size() < 2 || here.size() < 2) return {};
+  std::vector<std::vector<cv::DMatch>> matches;
+  cv::BFMatcher(cv::NORM_HAMMING).knnMatch(described_here, described_there, matches, 2);
+  std::vector<cv::Point2f> from, to;
+  for (const auto& best : matches) {
+    if (best.size() < 2 || best[0].distance > kRatio * best[1].distance) continue;
+    from.push_back(here[static_cast<std::size_t>(best[0].queryIdx)].pt);
+    to.push_back(there[static_cast<std::size_t>(best[0].trainIdx)].pt);
+  }
+  if (from.size() < kMinInliers) return {};
+  std::vector<unsigned char> inliers;
+  const cv::Mat affine = cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, 3);
+  if (affine.empty() || std::count(inliers.begin(), inliers.end(), 1) < static_cast<long>(kMinInliers))
+    return {};
+  const double c = affine.at<double>(0, 0), s = affine.at<double>(1, 0), scale = std::hypot(c, s);
+  if (scale < 0.9 || scale > 1.1) return {};
+  const Pose2 turn{0, 0, std::atan2(s, c)};
+  const Eigen::Vector2d pixel(affine.at<double>(0, 2),
+                              affine.at<double>(1, 2));  // where the current's (0, 0) lies
+  const Eigen::Vector2d shift = metresOf(reference, pixel) - turn * metresOf(current, {0, 0});
+  return Pose2{shift.x(), shift.y(), turn.yaw_rad};
 }
 
 }  // namespace cornerstone::bench

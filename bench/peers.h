@@ -37,9 +37,16 @@ void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, 
 GridMap fromMrpt(const mrpt::maps::COccupancyGridMap2D& map);
 mrpt::maps::COccupancyGridMap2D toMrpt(const GridMap& map);
 
-// CGridMapAligner with its default options and a prior that says nothing; empty: no mode left. with_points:
-// the occupied cells also as a point map, which its last step (ICP) needs; on grids alone it skips that
-// check.
-std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, bool with_points);
+// CGridMapAligner with a prior that says nothing; empty: no mode left.
+enum class MrptAligner {
+  kGrids,           // default options
+  kGridsAndPoints,  // the occupied cells also as a point map, which its last step (ICP) needs
+  kMoreFeatures     // the same with three times the features and half the consensus
+};
+std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, MrptAligner aligner);
+
+// The map-merging recipe: AKAZE features of the maps as grey pictures, matched by ratio, a similarity by
+// RANSAC. Empty: fewer than 12 inliers, or a scale that is none.
+std::optional<Pose2> alignFeatures(const GridMap& reference, const GridMap& current);
 
 }  // namespace cornerstone::bench

@@ -1,15 +1,20 @@
 #include "cornerstone/landmarks/detect_corners.h"
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 
 #include "cornerstone/landmarks/corner_candidates.h"
 #include "cornerstone/landmarks/corner_fit.h"
+#include "cornerstone/landmarks/crop.h"
 
 namespace cornerstone {
 namespace {
 
-// A corner suppresses those with a higher rms near it (paper, section 4.1); the two kinds are different
-// landmarks.
+constexpr int kAlignment =
+    64;  // cells: candidates are looked for in squares, and cells are looked at in words
+
+}  // namespace
+
 std::vector<CornerLandmark> suppressNear(std::vector<CornerLandmark> corners, double radius_m) {
   std::stable_sort(corners.begin(), corners.end(),
                    [](const CornerLandmark& a, const CornerLandmark& b) { return a.rms_m < b.rms_m; });
@@ -23,8 +28,6 @@ std::vector<CornerLandmark> suppressNear(std::vector<CornerLandmark> corners, do
   }
   return kept;
 }
-
-}  // namespace
 
 void describe(ParamVisitor& visitor, LandmarkParams& params) {
   visitor.group("edges", [&] { describe(visitor, params.edges); });
@@ -43,13 +46,17 @@ void describe(ParamVisitor& visitor, LandmarkParams& params) {
 Landmarks detectLandmarks(const GridMap& map, const LandmarkParams& params) {
   Landmarks landmarks;
   landmarks.states = cellStates(map, params.edges);
-  landmarks.edges = findEdges(map, landmarks.states, params.edges);
+  const cv::Rect known = landmarks.states.empty() ? cv::Rect() : cv::boundingRect(landmarks.states);
+  if (known.empty()) return landmarks;
+  const cv::Rect cells = aligned(known, kAlignment);
+  const GridMap part = cropped(map, cells);
+  landmarks.edges = findEdges(part, landmarks.states(cells), params.edges);
   if (landmarks.edges.empty()) return landmarks;
-  const DistanceField field(landmarks.edges, map.geometry);
+  const DistanceField field(landmarks.edges, part.geometry);
   const EdgeIndex index(landmarks.edges, 0.5 * params.arm_length_m);
-  CornerFitter fitter(field, index, map.geometry, params);
+  CornerFitter fitter(field, index, part.geometry, params);
   std::vector<CornerLandmark> corners;
-  for (const Pose2& candidate : findCornerCandidates(field, map.geometry, params)) {
+  for (const Pose2& candidate : findCornerCandidates(field, part.geometry, params)) {
     const std::vector<CornerLandmark> fitted = fitter.fit(candidate);
     corners.insert(corners.end(), fitted.begin(), fitted.end());
   }

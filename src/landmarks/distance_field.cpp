@@ -9,7 +9,8 @@ namespace {
 
 static_assert((kReachCells + 1) * kDistanceUnits < 256, "distances fit a byte");
 constexpr int kSquare = 2 * kReachCells + 1;
-constexpr int kPitch = 16;  // of a row of the stamp: a register's bytes
+constexpr double kInside = 1e-3;  // of a cell
+constexpr int kPitch = 16;        // of a row of the stamp: a register's bytes
 
 // Distances around an edge, row by row.
 std::array<unsigned char, kSquare * kPitch> distanceStamp() {
@@ -30,7 +31,9 @@ DistanceField::DistanceField(const std::vector<EdgePoint>& edges, const GridGeom
                  static_cast<unsigned char>((kReachCells + 1) * kDistanceUnits)) {
   const auto stamp = distanceStamp();
   for (const EdgePoint& edge : edges) {
-    const Cell cell = geometry.cellAt(edge.position_m);
+    // Many edges lie on the border between two cells, to the last digit: they count to the upper one.
+    const Cell cell =
+        geometry.cellAt(edge.position_m + Eigen::Vector2d::Constant(kInside * geometry.resolution_m));
     if (!geometry.contains(cell) || distances_(cell.row, cell.col) == 0) continue;
     const int left = std::max(cell.col - kReachCells, 0),
               right = std::min(cell.col + kReachCells, geometry.cols - 1);

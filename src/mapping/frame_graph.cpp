@@ -48,6 +48,9 @@ void describe(ParamVisitor& visitor, FrameGraphParams& params) {
   visitor.field("match_weight", params.match_weight);
   visitor.field("place_weight", params.place_weight);
   visitor.field("loss_sigmas", params.loss_sigmas);
+  visitor.field("step_loss_sigmas", params.step_loss_sigmas);
+  visitor.field("fitted_step_sigma_m", params.fitted_step_sigma_m);
+  visitor.degrees("fitted_step_sigma_deg", params.fitted_step_sigma_rad);
   visitor.field("solve_after_frames", params.solve_after_frames);
   visitor.field("redraw_looks_per_scan", params.redraw_looks_per_scan);
   visitor.field("redraw_shift_m", params.redraw_shift_m);
@@ -81,6 +84,9 @@ void requireValid(const FrameGraphParams& params) {
   requireWithin(params.match_weight, 1e-3, 1, "match_weight");
   requireWithin(params.place_weight, 1e-3, 1, "place_weight");
   requireWithin(params.loss_sigmas, 0.1, 100, "loss_sigmas");
+  requireWithin(params.step_loss_sigmas, 0.1, 1000, "step_loss_sigmas");
+  requireWithin(params.fitted_step_sigma_m, 1e-4, 100, "fitted_step_sigma_m");
+  requireWithin(params.fitted_step_sigma_rad, 1e-4, 100, "fitted_step_sigma_deg");
   requireWithin(params.solve_after_frames, 1, 100000, "solve_after_frames");
   requireWithin(params.redraw_looks_per_scan, 2, 10000, "redraw_looks_per_scan");
   requireWithin(params.redraw_shift_m, 0, 10, "redraw_shift_m");
@@ -138,6 +144,7 @@ PoseEstimate FrameGraph::addFrame(const RangeScan& scan, const Pose2& odom_from_
   }
   const PoseEstimate placed = placeNewest(prior, first_match);
   frame.map_from_base = placed.map_from_base;
+  if (!frames_.empty()) frame.step_as_fitted = frames_.back().map_from_base.inverse() * placed.map_from_base;
   frames_.push_back(std::move(frame));
   return placed;
 }
@@ -178,12 +185,18 @@ PoseEstimate FrameGraph::placeNewest(const PoseEstimate& prior, std::size_t firs
   return {poseOf(pose), of_pose};
 }
 
+void FrameGraph::addStep(ceres::Problem& problem, const OdometryStepCost& cost, const Blocks& blocks) const {
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<OdometryStepCost, 3, 3, 3, 3>(new OdometryStepCost(cost)),
+      new ceres::CauchyLoss(params_.step_loss_sigmas), blocks.earlier, blocks.later, blocks.shared);
+}
+
 void FrameGraph::addMatch(ceres::Problem& problem, const FrameMatch& match, double weight,
-                          const MatchBlocks& blocks) const {
+                          const Blocks& blocks) const {
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<FrameMatchCost, 5, 3, 3, 2>(new FrameMatchCost(match)),
       new ceres::ScaledLoss(new ceres::CauchyLoss(params_.loss_sigmas), weight, ceres::TAKE_OWNERSHIP),
-      blocks.earlier, blocks.later, blocks.calibration);
+      blocks.earlier, blocks.later, blocks.shared);
 }
 
 void FrameGraph::addLook(const RangeScan& scan, const Pose2& odom_from_base) {
@@ -214,12 +227,17 @@ GraphSolution FrameGraph::solve() {
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<ZeroPriorCost<3>, 3, 3>(new ZeroPriorCost<3>(rate_sigmas)), nullptr,
       rates.data());
+  PoseBlock no_rates = {0, 0, 0};
+  const double fitted_m = params_.fitted_step_sigma_m;
+  const Eigen::Vector3d fitted_sigmas(fitted_m, fitted_m, params_.fitted_step_sigma_rad);
   for (std::size_t i = 1; i < frames_.size(); ++i) {
     const Pose2 step = frames_[i - 1].odom_from_base.inverse() * frames_[i].odom_from_base;
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<OdometryStepCost, 3, 3, 3, 3>(
-                                 new OdometryStepCost(step, stepSigmas(step, odometry_))),
-                             nullptr, poses[i - 1].data(), poses[i].data(), rates.data());
+    addStep(problem, {step, stepSigmas(step, odometry_)},
+            {poses[i - 1].data(), poses[i].data(), rates.data()});
+    addStep(problem, {frames_[i].step_as_fitted, fitted_sigmas},
+            {poses[i - 1].data(), poses[i].data(), no_rates.data()});
   }
+  if (problem.HasParameterBlock(no_rates.data())) problem.SetParameterBlockConstant(no_rates.data());
   for (const Match& match : matches_)
     addMatch(problem, match.match, params_.match_weight,
              {poses[match.earlier].data(), poses[match.later].data(), calibration.data()});

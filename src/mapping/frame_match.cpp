@@ -16,7 +16,8 @@ struct Sums {
   Matrix5d squares = Matrix5d::Zero();   // J' W J
   Vector5d gradient = Vector5d::Zero();  // J' W r
   int in_view = 0;
-  int met = 0;
+  int met = 0;       // within the gate
+  int agreeing = 0;  // within three sigmas
 };
 
 class Matching {
@@ -56,6 +57,7 @@ class Matching {
       sums.squares += weight * row * row.transpose();
       sums.gradient += weight * residual_m * row;
       ++sums.met;
+      sums.agreeing += residual_m * residual_m < 9 * variance_m2;
     }
     return sums;
   }
@@ -76,8 +78,13 @@ class Matching {
   Pose2 sensor_from_base_;
 };
 
+// To go on with: pieces within the gate. To be believed: pieces within three sigmas.
 bool enough(const Sums& sums, const FrameMatchParams& params) {
   return sums.met >= params.min_pieces && sums.met >= params.min_agreeing_share * sums.in_view;
+}
+
+bool agree(const Sums& sums, const FrameMatchParams& params) {
+  return sums.agreeing >= params.min_pieces && sums.agreeing >= params.min_agreeing_share * sums.in_view;
 }
 
 // The quadratic of the sums at their pose, tempered by the floor: information L becomes (I + L F)^-1 L.
@@ -127,7 +134,7 @@ std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& l
     if (step.norm() < 1e-4 && round >= kWideRounds) break;
   }
   const Sums sums = matching.sumAt(pose, params.gate_m / 2);
-  if (!enough(sums, params)) return std::nullopt;
+  if (!agree(sums, params)) return std::nullopt;
   return quadraticOf(sums, pose, {start.calibration.offset_per_m, start.calibration.slope_per_m}, params);
 }
 

@@ -5,11 +5,16 @@
 #include <tf2_ros/transform_listener.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include <chrono>
+#include <future>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "cornerstone/base/errors.h"
+#include "cornerstone/registration/frame_smoother.h"
+#include "cornerstone/registration/map_registrar.h"
 #include "cornerstone/registration/merge_maps.h"
 #include "cornerstone/ros/diagnostics.h"
 #include "cornerstone/ros/grid_messages.h"
@@ -24,24 +29,26 @@
 namespace cornerstone {
 namespace {
 
-// What is known of one robot: its map as tiles, and the landmarks found in the version seen last.
+using MapVersion = std::pair<std::uint32_t, std::uint32_t>;  // epoch, version
+
+// One robot's map as its tiles arrive.
 struct RobotMap {
   TileFollower tiles;
   ros::Subscriber subscriber;
-  GridMap map;
-  Landmarks landmarks;
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> seen;  // epoch, version
+  std::optional<MapVersion> tried;  // the version of the last attempt
 
-  // True: there is a newer map than at the last call, and landmarks are those of it.
-  bool refresh(const LandmarkParams& params) {
-    const std::pair newest(tiles.epoch(), tiles.version());
-    if (tiles.empty() || seen == newest) return false;
-    map = tiles.map();
-    landmarks = detectLandmarks(map, params);
-    seen = newest;
-    return true;
-  }
-  MapView view() const { return {map, landmarks}; }
+  MapVersion version() const { return {tiles.epoch(), tiles.version()}; }
+  bool isNew() const { return !tiles.empty() && tried != version(); }
+  bool beganAnew() const { return tried && tried->first != tiles.epoch(); }
+};
+
+// What an attempt in the background brings home.
+struct Job {
+  RegistrationAttempt attempt;
+  std::optional<GridMap> merged;
+  MapVersion own, reference;  // the maps it looked at
+  Eigen::Vector2d centre_m;   // of the own map, where answers are compared
+  double elapsed_s = 0;
 };
 
 }  // namespace
@@ -66,8 +73,12 @@ class RegistrationNodelet : public nodelet::Nodelet {
     markers_publisher_ = node.advertise<visualization_msgs::MarkerArray>("landmark_markers", 1, true);
     follow(own_, node.resolveName("map_tiles"));
     if (registers_) startRegistering(node);
+    registrar_.emplace(params_.landmarks, params_.registration);
+    smoother_.emplace(params_.tf_smoothing_s);
     attempt_timer_ =
         node.createTimer(ros::Duration(params_.period_s), [this](const ros::TimerEvent&) { attempt(); });
+    collect_timer_ =
+        node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { collect(); });
   }
 
   void startRegistering(ros::NodeHandle& node) {
@@ -89,6 +100,7 @@ class RegistrationNodelet : public nodelet::Nodelet {
           try {
             if (!robot.tiles.take(*tiles)) return;
             tracker_->lose(topic + ": the map began anew");
+            smoother_->reset();
             last_broadcast_ = ros::Time();  // maps begin anew when time has jumped back, too
           } catch (const InputError& error) {
             diagnostics_->dropped(topic + ": " + error.what());
@@ -96,35 +108,69 @@ class RegistrationNodelet : public nodelet::Nodelet {
         });
   }
 
+  // Looks at maps that changed, in a thread of its own: callbacks never wait for it.
   void attempt() {
-    const ros::WallTime start = ros::WallTime::now();
-    const bool own_changed = own_.refresh(params_.landmarks);
-    if (own_changed) publishLandmarks();
-    if (registers_) {
-      const bool reference_changed = reference_.refresh(params_.landmarks);
-      if ((own_changed || reference_changed) && own_.seen && reference_.seen) registerOnce();
-      publishRegistration();
-    }
-    if (own_changed) diagnostics_->processed((ros::WallTime::now() - start).toSec());
+    collect();
+    if (job_.valid()) return;  // still at the last maps
+    const bool both = registers_ && !own_.tiles.empty() && !reference_.tiles.empty();
+    if (own_.isNew() || (both && reference_.isNew())) startJob(both);
+    if (registers_) publishRegistration();
   }
 
-  void registerOnce() {
+  void startJob(bool both) {
+    RegistrationTask task;
+    task.current = own_.tiles.map();
+    if (both) task.reference = reference_.tiles.map();
+    task.hints = hints();
+    task.time_s = ros::Time::now().toSec();
+    task.current_anew = own_.beganAnew();
+    task.reference_anew = reference_.beganAnew();
+    own_.tried = own_.version();
+    reference_.tried = reference_.version();
+    std::optional<Pose2> merge_at;
+    if (both && tracker_->state() == RegistrationState::kRegistered &&
+        merged_publisher_.getNumSubscribers() > 0)
+      merge_at = tracker_->estimate()->reference_from_current;
+    Job job;
+    job.own = own_.version();
+    job.reference = reference_.version();
+    job.centre_m = task.hints.focus_in_current_m.value_or(knownCentre(task.current));
+    job_ = std::async(std::launch::async, [this, task = std::move(task), job, merge_at]() mutable {
+      const ros::WallTime start = ros::WallTime::now();
+      job.attempt = registrar_->attempt(task);
+      if (merge_at) job.merged = mergeMaps(*task.reference, task.current, *merge_at);
+      job.elapsed_s = (ros::WallTime::now() - start).toSec();
+      return job;
+    });
+  }
+
+  RegistrationHints hints() const {
     RegistrationHints hints;
     if (tracker_->state() == RegistrationState::kRegistered)
       hints.prior = tracker_->estimate()->reference_from_current;
+    else if (params_.initial.known)
+      hints.prior = params_.initial.reference_from_current;
     hints.focus_in_current_m = whereTheRobotIs();
-    auto [answer, refusal] = registerMaps(reference_.view(), own_.view(), hints, params_.registration);
-    refusal_ = refusal;
-    // Where the known frame no longer holds, the maps may say where the truth lies: that is a contradiction.
-    if (!answer && hints.prior) {
-      hints.prior.reset();
-      answer = registerMaps(reference_.view(), own_.view(), hints, params_.registration).registration;
-    }
-    // Answers are compared, and followed, where the frame must be right.
+    return hints;
+  }
+
+  // Takes up what a finished attempt found, unless one of its maps has begun anew meanwhile.
+  void collect() {
+    if (!job_.valid() || job_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    const Job job = job_.get();
+    if (job.own.first != own_.tiles.epoch() ||
+        (registers_ && job.reference.first != reference_.tiles.epoch()))
+      return;
+    publishLandmarks(job);
+    diagnostics_->processed(job.elapsed_s);
+    if (!registers_ || reference_.tiles.empty()) return;
+    refusal_ = job.attempt.outcome.refusal;
     const double now_s = ros::Time::now().toSec();
-    tracker_->update(answer, hints.focus_in_current_m.value_or(knownCentre(own_.map)), now_s);
     // An answer that the tracker holds back as an outlier must not lend its pairs to the frame that stands.
-    if (answer && tracker_->evidenceTime() == now_s) keepMatches(*answer);
+    if (tracker_->update(job.attempt.outcome.registration, job.centre_m, now_s)) keepPairs(job.attempt);
+    centre_m_ = job.centre_m;
+    publishRegistration();
+    if (job.merged) publishMerged(*job.merged);
   }
 
   // In its own map; empty while tf does not say.
@@ -134,17 +180,18 @@ class RegistrationNodelet : public nodelet::Nodelet {
     return Eigen::Vector2d(map_from_base->translation().head<2>());
   }
 
-  void publishLandmarks() {
+  void publishLandmarks(const Job& job) {
     CornerArray message;
     message.header.stamp = ros::Time::now();
     message.header.frame_id = params_.frames.map;
     message.robot = params_.robot;
-    message.map_epoch = own_.tiles.epoch();
-    message.version = own_.tiles.version();
-    for (const CornerLandmark& corner : own_.landmarks.corners) message.corners.push_back(toMessage(corner));
+    std::tie(message.map_epoch, message.version) = job.own;
+    const Landmarks& landmarks = job.attempt.landmarks;
+    for (const CornerLandmark& corner : landmarks.corners)
+      message.corners.push_back(toMessage(corner, message.header.stamp.toSec()));
     landmarks_publisher_.publish(message);
     if (markers_publisher_.getNumSubscribers() > 0)
-      markers_publisher_.publish(toMarkers(own_.landmarks, params_.landmarks.arm_length_m, message.header));
+      markers_publisher_.publish(toMarkers(landmarks, params_.landmarks.arm_length_m, message.header));
   }
 
   void publishRegistration() {
@@ -165,28 +212,33 @@ class RegistrationNodelet : public nodelet::Nodelet {
     registration_publisher_.publish(message);
     if (message.state != MapRegistration::REGISTERED) return;
     if (matches_publisher_.getNumSubscribers() > 0) matches_publisher_.publish(toMatchMarkers(message));
-    if (merged_publisher_.getNumSubscribers() > 0)
-      merged_publisher_.publish(toOccupancyGrid(
-          mergeMaps(reference_.map, own_.map, tracker_->estimate()->reference_from_current), message.header));
   }
 
-  // The matches of an answer are indices into landmarks that the next map replaces.
-  void keepMatches(const Registration& answer) {
+  void publishMerged(const GridMap& merged) {
+    std_msgs::Header header;
+    header.stamp = ros::Time::now();
+    header.frame_id = params_.reference_map_frame;
+    merged_publisher_.publish(toOccupancyGrid(merged, header));
+  }
+
+  void keepPairs(const RegistrationAttempt& attempt) {
+    const double now_s = ros::Time::now().toSec();
     reference_corners_.clear();
     current_corners_.clear();
-    for (const auto& [reference, current] : answer.matches) {
-      reference_corners_.push_back(
-          toMessage(reference_.landmarks.corners.at(static_cast<std::size_t>(reference))));
-      current_corners_.push_back(toMessage(own_.landmarks.corners.at(static_cast<std::size_t>(current))));
+    for (const auto& [reference, current] : attempt.pairs) {
+      reference_corners_.push_back(toMessage(reference, now_s));
+      current_corners_.push_back(toMessage(current, now_s));
     }
   }
 
   void broadcast() {
     const ros::Time now = ros::Time::now();
+    if (tracker_->state() != RegistrationState::kRegistered) smoother_->reset();
     if (tracker_->state() != RegistrationState::kRegistered || now <= last_broadcast_) return;
     last_broadcast_ = now;
-    broadcaster_->sendTransform(toStamped(tracker_->estimate()->reference_from_current,
-                                          params_.reference_map_frame, params_.frames.map, now));
+    const Pose2 shown =
+        smoother_->follow(tracker_->estimate()->reference_from_current, centre_m_, now.toSec());
+    broadcaster_->sendTransform(toStamped(shown, params_.reference_map_frame, params_.frames.map, now));
   }
 
   RegistrationNodeletParams params_;
@@ -194,6 +246,9 @@ class RegistrationNodelet : public nodelet::Nodelet {
   RobotMap own_;
   RobotMap reference_;
   std::optional<RegistrationTracker> tracker_;
+  std::optional<MapRegistrar> registrar_;  // used by the job alone while there is one
+  std::optional<FrameSmoother> smoother_;
+  Eigen::Vector2d centre_m_ = Eigen::Vector2d::Zero();  // of the own map, where answers are compared
   std::optional<StageDiagnostics> diagnostics_;
   std::string refusal_;
   std::vector<Corner> reference_corners_;  // the pairs of the newest answer that the tracker took
@@ -207,8 +262,10 @@ class RegistrationNodelet : public nodelet::Nodelet {
   std::optional<tf2_ros::TransformListener> listener_;
   std::optional<tf2_ros::TransformBroadcaster> broadcaster_;
   ros::Timer attempt_timer_;
+  ros::Timer collect_timer_;
   ros::Timer tf_timer_;
   ros::Time last_broadcast_;
+  std::future<Job> job_;  // last: it ends before what it uses
 };
 
 std::unique_ptr<nodelet::Nodelet> makeRegistration() { return std::make_unique<RegistrationNodelet>(); }

@@ -47,17 +47,26 @@ double neededAgreement_m(const PoseEvidence& evidence, const RegistrationParams&
 
 }  // namespace
 
+double leadOf(const std::vector<PoseScore>& poses, double square_m) {
+  if (poses.empty()) return 0;
+  double lead = leadSigmas(poses.front(), {}, square_m);
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    lead = std::min(lead, leadSigmas(poses.front(), poses[i], square_m));
+  return lead;
+}
+
 PoseEvidence weighPoses(const std::vector<JudgedPose>& poses, double square_m) {
   PoseEvidence evidence;
   if (poses.empty() || valueOf(poses.front().elastic) <= 0) return evidence;
   const JudgedPose& best = poses.front();
   evidence.agreeing_m = best.elastic.agree * square_m;
   evidence.contradicting_m = best.elastic.contradict * square_m;
-  evidence.lead_sigmas = leadSigmas(best.rigid, {}, square_m);
+  std::vector<PoseScore> rigid;
+  for (const JudgedPose& pose : poses) rigid.push_back(pose.rigid);
+  evidence.lead_sigmas = leadOf(rigid, square_m);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const PoseScore& rival = poses[i].elastic;
     const double share = valueOf(rival) / valueOf(best.elastic);
-    evidence.lead_sigmas = std::min(evidence.lead_sigmas, leadSigmas(best.rigid, poses[i].rigid, square_m));
     evidence.second_best = std::max(evidence.second_best, share);
     if (rival.contradict < kClear * rival.agree) evidence.clear_rival = std::max(evidence.clear_rival, share);
   }

@@ -3,12 +3,11 @@
 #include <ceres/tiny_solver.h>
 #include <ceres/tiny_solver_cost_function_adapter.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "cornerstone/registration/line_cost.h"
+#include "cornerstone/registration/pose_covariance.h"
 
 namespace cornerstone {
 namespace {
@@ -16,7 +15,6 @@ namespace {
 using Adapter = ceres::TinySolverCostFunctionAdapter<Eigen::Dynamic, 3>;
 
 constexpr std::size_t kMinPartners = 10;
-constexpr double kTile_m = 3;  // about a wall
 
 // Factor of the residuals around a point.
 struct Focus {
@@ -74,8 +72,8 @@ struct Pairing {
   }
 };
 
-// Cauchy weights for the scatter that the pairs show, and more near the focus.
-void weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Focus& focus) {
+// Cauchy weights for the scatter that the pairs show, and more near the focus. Gives the scatter.
+double weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Focus& focus) {
   std::vector<double> residuals(pairs.size());
   for (LinePair& pair : pairs) pair.weight = 1;
   const double* block = x.data();
@@ -88,62 +86,13 @@ void weigh(std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Focus& 
   for (std::size_t i = 0; i < pairs.size(); ++i)
     pairs[i].weight =
         focus.factorAt(pairs[i].current_m) / std::sqrt(1 + residuals[i] * residuals[i] / (scale * scale));
+  return scale;
 }
 
 Pose2 poseAt(const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m) {
   const Pose2 turn{0, 0, wrapAngle(x[2])};
   const Eigen::Vector2d shift = x.head<2>() - turn * pivot_m;
   return {shift.x(), shift.y(), turn.yaw_rad};
-}
-
-using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-
-// Neighbouring edges err together: where the maps bend, by whole walls. The scatter of the sums J'r over
-// squares of some metres is what the pose's covariance must carry (the cluster-robust covariance of least
-// squares).
-Eigen::Matrix3d scatterOfTiles(const std::vector<LinePair>& pairs, const Jacobian& jacobian,
-                               const Eigen::VectorXd& residuals) {
-  std::map<std::pair<int, int>, Eigen::Vector3d> sums;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Eigen::Vector2d square = pairs[i].current_m / kTile_m;
-    const auto place =
-        sums.try_emplace({static_cast<int>(std::floor(square.y())), static_cast<int>(std::floor(square.x()))},
-                         Eigen::Vector3d::Zero())
-            .first;
-    const auto row = static_cast<Eigen::Index>(i);
-    place->second += jacobian.row(row).transpose() * residuals[row];
-  }
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const auto& entry : sums) scatter += entry.second * entry.second.transpose();
-  const auto tiles = static_cast<double>(sums.size());
-  return scatter * tiles / std::max(tiles - 3, 1.0);  // three parameters are fitted to them
-}
-
-void judge(const std::vector<LinePair>& pairs, const Eigen::Vector3d& x, const Eigen::Vector2d& pivot_m,
-           RefinedPose& refined) {
-  const auto count = static_cast<Eigen::Index>(pairs.size());
-  Eigen::VectorXd residuals(count);
-  Jacobian jacobian(count, 3);
-  const double* block = x.data();
-  double* jacobians[] = {jacobian.data()};
-  LineCost(pairs).Evaluate(&block, residuals.data(), jacobians);
-  double weights = 0;
-  for (const LinePair& pair : pairs) weights += pair.weight * pair.weight;
-  refined.rms_m = std::sqrt(residuals.squaredNorm() / weights);
-  refined.partners = static_cast<int>(count);
-  const Eigen::Matrix3d information = jacobian.transpose() * jacobian;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(information.topLeftCorner<2, 2>());
-  refined.spread = axes.eigenvalues()[0] / axes.eigenvalues()[1];
-  const Eigen::Matrix3d inverse = information.inverse();
-  // Both maps' edges see the same walls, so each pair counts half.
-  const Eigen::Matrix3d at_pivot = 2 * refined.rms_m * refined.rms_m * inverse +
-                                   inverse * scatterOfTiles(pairs, jacobian, residuals) * inverse;
-  // From the pivot to the current map's origin.
-  const Eigen::Vector2d lever = Pose2{0, 0, x[2]} * Eigen::Vector2d(-pivot_m);
-  Eigen::Matrix3d by_pivot = Eigen::Matrix3d::Identity();
-  by_pivot(0, 2) = -lever.y();
-  by_pivot(1, 2) = lever.x();
-  refined.covariance = by_pivot * at_pivot * by_pivot.transpose();
 }
 
 }  // namespace
@@ -159,6 +108,7 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
   const Eigen::Vector2d start = guess * pivot_m;
   Eigen::Vector3d x(start.x(), start.y(), guess.yaw_rad);
   std::vector<LinePair> pairs;
+  double scale_m = 0;
   for (int round = 0; round < options.rounds; ++round) {
     const double share = options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 1;
     const double reach_m =
@@ -167,7 +117,7 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
     const std::size_t edges = round + 2 < options.rounds ? options.max_edges / 4 : options.max_edges;
     pairs = pairing.under(poseAt(x, pivot_m), reach_m, edges);
     if (pairs.size() < kMinPartners) return std::nullopt;
-    weigh(pairs, x, focus);
+    scale_m = weigh(pairs, x, focus);
     const LineCost cost(pairs);
     const Adapter adapter(cost);
     ceres::TinySolver<Adapter> solver;
@@ -177,7 +127,13 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
   }
   RefinedPose refined;
   refined.reference_from_current = poseAt(x, pivot_m);
-  judge(pairs, x, pivot_m, refined);
+  const FitQuality quality = judgeFit({pairs, x, scale_m, options.cell_m});
+  // From the pivot to the current map's origin.
+  refined.covariance = composeCovariance({x[0], x[1], x[2]}, quality.covariance,
+                                         {-pivot_m.x(), -pivot_m.y(), 0}, Eigen::Matrix3d::Zero());
+  refined.rms_m = quality.rms_m;
+  refined.spread = quality.spread;
+  refined.partners = static_cast<int>(pairs.size());
   if (!refined.covariance.allFinite()) return std::nullopt;
   return refined;
 }

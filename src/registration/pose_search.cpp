@@ -104,6 +104,13 @@ bool PoseDistance::apart(const Pose2& a, const Pose2& b) const {
          std::abs(wrapAngle(a.yaw_rad - b.yaw_rad)) > angle_rad;
 }
 
+void settlePoses(const EvidencePair& maps, std::vector<Hypothesis>& poses, const RegistrationParams& params) {
+  const Judge judge{maps, params};
+  const Climb climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, M_PI / 180, 4}};
+  for (Hypothesis& h : poses)
+    h = judge(climb.from(h.reference_from_current).reference_from_current, {ScoreLevel::kFine, kFineSamples});
+}
+
 std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<Pose2>& proposals,
                                     const RegistrationParams& params) {
   const Judge judge{maps, params};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
+#include "cornerstone/landmarks/crop.h"
 #include "cornerstone/registration/corner_matching.h"
 #include "cornerstone/registration/decision.h"
 #include "cornerstone/registration/edge_refinement.h"
@@ -95,11 +97,27 @@ std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence
   return judged;
 }
 
+// The lead of the first pose where edges must meet closely: where maps do not bend, that parts a right pose
+// from one whose walls are only near.
+double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const RegistrationParams& params) {
+  const auto closer = [&](const MapEvidence& map) {
+    MapEvidence close = map;
+    close.fine = EvidenceGrid(map.fine.counts(), map.edges, params.close_reach_m);
+    return close;
+  };
+  const MapEvidence there = closer(maps.reference), here = closer(maps.current);
+  settlePoses({there, here}, poses, params);
+  std::vector<PoseScore> scores;
+  for (const Hypothesis& h : poses) scores.push_back(h.score);
+  return leadOf(scores, params.fine_cell_m);
+}
+
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
 std::optional<RefinedPose> refine(const PreparedMap& reference, const PreparedMap& current,
-                                  const Pose2& guess, const RefinementOptions& options) {
+                                  const Pose2& guess, RefinementOptions options) {
   const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m / 3);
   const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m / 3);
+  options.cell_m = std::max(reference.evidence.cell_m, current.evidence.cell_m);
   RefinementOptions everywhere = options;
   everywhere.focus_in_current_m.reset();
   const auto whole = refineOnEdges(reference_index, current_index, guess, everywhere);
@@ -129,11 +147,15 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
   Eigen::Vector2d middle(0, 0);
   for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
   std::vector<EdgeSample> samples = samplesOf(edges);
-  SquareCounts counts = countSquares(view.map.geometry, view.landmarks.states, params.fine_cell_m);
+  const cv::Mat1b& states = view.landmarks.states;
+  const cv::Rect known = states.empty() ? cv::Rect() : cv::boundingRect(states);
+  SquareCounts counts =
+      countSquares(croppedGeometry(view.map.geometry, known), states(known), params.fine_cell_m);
   EvidenceGrid coarse(inLargerSquares(counts, params.coarse_cell_m), thinEdges(edges, params.coarse_cell_m),
                       params.coarse_reach_m);
   EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
-  return {std::move(coarse), std::move(fine), std::move(edges), std::move(samples), middle};
+  return {std::move(coarse),  std::move(fine), std::move(edges),
+          std::move(samples), middle,          view.map.geometry.resolution_m};
 }
 
 RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap& current,
@@ -156,6 +178,8 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
   evidence.smaller_map_m =
       static_cast<double>(std::min(there.edges.size(), here.edges.size())) * params.fine_cell_m;
   evidence.with_prior = hints.prior.has_value();
+  if (probabilityRight(evidence) < params.min_probability)
+    evidence.lead_sigmas = std::max(evidence.lead_sigmas, closeLead({there, here}, best, params));
   if (const auto reason = reasonToRefuse(evidence, params)) return {{}, *reason};
 
   Registration registration;
@@ -186,6 +210,7 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("coarse_reach_m", params.coarse_reach_m);
   visitor.field("fine_cell_m", params.fine_cell_m);
   visitor.field("fine_reach_m", params.fine_reach_m);
+  visitor.field("close_reach_m", params.close_reach_m);
   visitor.field("contradiction", params.contradiction);
   visitor.field("coarse_contradiction", params.coarse_contradiction);
   visitor.field("different_m", params.different_m);

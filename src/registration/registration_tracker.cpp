@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cornerstone/base/errors.h"
+#include "cornerstone/registration/frame_smoother.h"
 
 namespace cornerstone {
 
@@ -34,22 +35,15 @@ bool RegistrationTracker::agrees(const Registration& answer, const Eigen::Vector
 
 void RegistrationTracker::follow(const Registration& answer, const Eigen::Vector2d& centre_m) {
   const double share = state_ == RegistrationState::kRegistered ? params_.follow_share : 1;
-  const Pose2 known = estimate_->reference_from_current;
-  const Pose2 found = answer.reference_from_current;
-  Pose2 next;
-  next.yaw_rad = wrapAngle(known.yaw_rad + share * wrapAngle(found.yaw_rad - known.yaw_rad));
-  // Moves the middle of the current map, not the far origin of its frame, on a straight line.
-  const Eigen::Vector2d middle = (1 - share) * (known * centre_m) + share * (found * centre_m);
-  const Eigen::Vector2d origin = middle - next.rotation() * centre_m;
-  next.x_m = origin.x();
-  next.y_m = origin.y();
+  const Pose2 next =
+      between(estimate_->reference_from_current, answer.reference_from_current, centre_m, share);
   estimate_ = answer;
   estimate_->reference_from_current = next;
 }
 
-void RegistrationTracker::update(const std::optional<Registration>& answer, const Eigen::Vector2d& centre_m,
+bool RegistrationTracker::update(const std::optional<Registration>& answer, const Eigen::Vector2d& centre_m,
                                  double time_s) {
-  if (!answer) return;
+  if (!answer) return false;
   if (estimate_ && agrees(*answer, centre_m)) {
     follow(*answer, centre_m);
     contradicting_ = 0;
@@ -59,13 +53,14 @@ void RegistrationTracker::update(const std::optional<Registration>& answer, cons
       state_ = RegistrationState::kRegistered;
       reason_.clear();
     }
-    return;
+    return true;
   }
-  if (state_ == RegistrationState::kRegistered && ++contradicting_ < params_.contradicting_answers) return;
+  if (state_ == RegistrationState::kRegistered && ++contradicting_ < params_.contradicting_answers)
+    return false;
   const bool lost = state_ == RegistrationState::kRegistered;
   if (lost) {
     lose("the maps now agree on another pose");
-    return;
+    return false;
   }
   estimate_ = answer;
   agreeing_ = 1;
@@ -73,6 +68,7 @@ void RegistrationTracker::update(const std::optional<Registration>& answer, cons
   evidence_time_s_ = time_s;
   state_ = params_.agreeing_answers <= 1 ? RegistrationState::kRegistered : RegistrationState::kCandidate;
   reason_ = state_ == RegistrationState::kRegistered ? "" : "waiting for agreeing answers";
+  return true;
 }
 
 void RegistrationTracker::lose(const std::string& reason) {

@@ -58,7 +58,7 @@ std::uint8_t toState(RegistrationState state) {
 
 }  // namespace
 
-Corner toMessage(const CornerLandmark& corner) {
+Corner toMessage(const CornerLandmark& corner, double now_s) {
   Corner message;
   message.x = corner.pose.x_m;
   message.y = corner.pose.y_m;
@@ -66,19 +66,10 @@ Corner toMessage(const CornerLandmark& corner) {
   message.covariance = toRowMajor(corner.covariance);
   message.rms = corner.rms_m;
   message.kind = corner.kind == CornerKind::kInsideFree ? Corner::INSIDE_FREE : Corner::INSIDE_SOLID;
+  message.id = corner.id;
+  message.looks = corner.looks;
+  message.age = corner.id != 0 ? now_s - corner.since_s : 0;
   return message;
-}
-
-CornerLandmark fromMessage(const Corner& message) {
-  CornerLandmark corner;
-  corner.pose = {message.x, message.y, message.yaw};
-  corner.covariance = fromRowMajor(message.covariance);
-  corner.rms_m = message.rms;
-  if (!corner.pose.isFinite() || !corner.covariance.allFinite() || !std::isfinite(corner.rms_m))
-    throw InputError("landmarks: a corner is not finite");
-  if (message.kind > Corner::INSIDE_SOLID) throw InputError("landmarks: a corner of unknown kind");
-  corner.kind = message.kind == Corner::INSIDE_FREE ? CornerKind::kInsideFree : CornerKind::kInsideSolid;
-  return corner;
 }
 
 MapRegistration toMessage(const RegistrationTracker& tracker, double now_s) {

@@ -25,6 +25,13 @@ void describe(ParamVisitor& visitor, OccupancyMapperParams& params) {
   visitor.group("mapper", [&] { describe(visitor, params.mapper); });
 }
 
+void describe(ParamVisitor& visitor, InitialPose& pose) {
+  visitor.field("known", pose.known);
+  visitor.field("x_m", pose.reference_from_current.x_m);
+  visitor.field("y_m", pose.reference_from_current.y_m);
+  visitor.degrees("yaw_deg", pose.reference_from_current.yaw_rad);
+}
+
 void describe(ParamVisitor& visitor, RegistrationNodeletParams& params) {
   visitor.field("robot", params.robot);
   visitor.field("reference_robot", params.reference_robot);
@@ -32,6 +39,8 @@ void describe(ParamVisitor& visitor, RegistrationNodeletParams& params) {
   visitor.field("reference_map_frame", params.reference_map_frame);
   visitor.field("period_s", params.period_s);
   visitor.field("tf_period_s", params.tf_period_s);
+  visitor.field("tf_smoothing_s", params.tf_smoothing_s);
+  visitor.group("initial", [&] { describe(visitor, params.initial); });
   visitor.group("landmarks", [&] { describe(visitor, params.landmarks); });
   visitor.group("registration", [&] { describe(visitor, params.registration); });
   visitor.group("tracker", [&] { describe(visitor, params.tracker); });

@@ -14,6 +14,7 @@ void answer(double range_m, const LaserParams& params, Beam& beam) {
   beam.sigma_m = params.sigma_m;
   beam.near_m = std::max(0.0, range_m - 2 * params.sigma_m);
   beam.far_m = range_m + 2 * params.sigma_m;
+  beam.clear_m = beam.near_m;
 }
 
 }  // namespace

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "support/drawn_maps.h"
 
@@ -31,6 +34,14 @@ void expectPose(const Answer& answer, const Pose2& expected, double distance_m, 
   const Pose2 pose = answer.registration->reference_from_current;
   EXPECT_LT((pose.translation() - expected.translation()).norm(), distance_m);
   EXPECT_LT(std::abs(wrapAngle(pose.yaw_rad - expected.yaw_rad)), angle_rad);
+}
+
+// Refused for one of the given reasons.
+void expectRefused(const Answer& answer, const std::vector<std::string>& reasons) {
+  EXPECT_FALSE(answer.registration.has_value());
+  EXPECT_TRUE(std::any_of(reasons.begin(), reasons.end(), [&](const std::string& reason) {
+    return answer.refusal.find(reason) != std::string::npos;
+  })) << answer.refusal;
 }
 
 const Pose2 kHere{2.3, -1.1, 2.1};
@@ -85,9 +96,7 @@ TEST(RegisterMaps, SameInputSameAnswer) {
 TEST(RegisterMaps, RefusesWithoutOverlap) {
   const GridMap a = draw(drawnOffice(), {Pose2{}, {-1, -2, 5.9, 12}}),
                 b = draw(drawnOffice(), {kHere, {12.1, -2, 18, 12}});
-  const Answer answer = align(a, b);
-  EXPECT_FALSE(answer.registration.has_value());
-  EXPECT_FALSE(answer.refusal.empty());
+  expectRefused(align(a, b), {"no pose agrees", "too little wall agrees"});
 }
 
 TEST(RegisterMaps, RefusesAMirroredMap) {
@@ -103,7 +112,7 @@ TEST(RegisterMaps, RefusesASymmetricRoomUnlessAPriorTells) {
   world.rooms = {{-3, -3, 3, 3}};
   const Pose2 there{0, 0, 0.1}, here{0.5, 0.2, 0.4};
   const GridMap a = draw(world, {there}), b = draw(world, {here});
-  EXPECT_FALSE(align(a, b).registration.has_value());
+  expectRefused(align(a, b), {"too little wall agrees", "another pose"});
   const Pose2 rough = truth(there, here) * Pose2{0.3, -0.2, 0.1};
   expectPose(align(a, b, rough), truth(there, here), 0.02, 3 * kFine_rad);
 }
@@ -113,8 +122,8 @@ TEST(RegisterMaps, RefusesALongCorridor) {
   world.rooms = {{0, 0, 60, 2.2}};
   const Pose2 there{0, 0, 0.1}, here{10, 0, 0.2};
   const GridMap a = draw(world, {there, {5, -1, 35, 4}}), b = draw(world, {here, {20, -1, 50, 4}});
-  EXPECT_FALSE(align(a, b).registration.has_value());
-  EXPECT_FALSE(align(a, b, truth(there, here) * Pose2{0.4, 0.1, 0.02}).registration.has_value());
+  expectRefused(align(a, b), {"another pose", "one direction open"});
+  expectRefused(align(a, b, truth(there, here) * Pose2{0.4, 0.1, 0.02}), {"one direction open"});
 }
 
 TEST(RegisterMaps, RefusesRepeatedIdenticalOffices) {
@@ -154,6 +163,20 @@ TEST(RegisterMaps, RefusesEmptyMapsEitherWay) {
     EXPECT_FALSE(align(empty, empty).registration.has_value());
     EXPECT_FALSE(align(office, empty, Pose2{}).registration.has_value());
   }
+}
+
+// What is known counts, not the size of the grid that holds it.
+TEST(RegisterMaps, TenThousandByTenThousandCells) {
+  const Pose2 there{0, 0, 0.1};
+  const GridMap office = draw(drawnOffice(), {there});
+  GridMap vast;
+  vast.geometry = office.geometry;
+  vast.geometry.cols = vast.geometry.rows = 10000;
+  vast.geometry.origin_x_m -= 4321 * office.geometry.resolution_m;
+  vast.geometry.origin_y_m -= 1234 * office.geometry.resolution_m;
+  vast.occupied = cv::Mat1f(10000, 10000, kUnseen);
+  office.occupied.copyTo(vast.occupied(cv::Rect(4321, 1234, office.geometry.cols, office.geometry.rows)));
+  expectPose(align(vast, draw(drawnOffice(), {kHere})), truth(there, kHere), kFine_m, kFine_rad);
 }
 
 TEST(RegisterMaps, DifferentResolutions) {

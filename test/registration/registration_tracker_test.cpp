@@ -76,6 +76,17 @@ TEST(RegistrationTracker, WithdrawsTheFrameOnContradictionAndRecovers) {
   EXPECT_EQ(tracker.state(), RegistrationState::kRegistered);
 }
 
+TEST(RegistrationTracker, TellsWhetherTheEstimateRestsOnAnAnswer) {
+  RegistrationTracker tracker(TrackerParams{});
+  EXPECT_FALSE(tracker.update({}, kCentre, 0));
+  EXPECT_TRUE(tracker.update(at(1, 2, 0), kCentre, 1)) << "a candidate";
+  EXPECT_TRUE(tracker.update(at(4, 2, 0), kCentre, 2)) << "another candidate in its place";
+  tracker = registered();
+  EXPECT_TRUE(tracker.update(at(1.01, 2, 0), kCentre, 4));
+  EXPECT_FALSE(tracker.update(at(3, 2, 0), kCentre, 5)) << "held back as an outlier";
+  EXPECT_FALSE(tracker.update(at(3, 2, 0), kCentre, 6)) << "the frame is withdrawn";
+}
+
 TEST(RegistrationTracker, AnAgreeingAnswerClearsEarlierContradiction) {
   RegistrationTracker tracker = registered();
   tracker.update(at(3, 2, 0), kCentre, 4);

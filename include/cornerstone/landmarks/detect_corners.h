@@ -33,6 +33,10 @@ struct Landmarks {
   std::vector<CornerLandmark> corners;
 };
 
+// Best fit first: a corner suppresses those with a higher rms near it (paper, section 4.1); the two kinds are
+// different landmarks.
+std::vector<CornerLandmark> suppressNear(std::vector<CornerLandmark> corners, double radius_m);
+
 Landmarks detectLandmarks(const GridMap& map, const LandmarkParams& params);
 
 }  // namespace cornerstone

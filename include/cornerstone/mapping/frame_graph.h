@@ -7,15 +7,19 @@
 // errors, so each counts by `match_weight`; a false one is held off by a Cauchy loss.
 #pragma once
 
-#include <ceres/problem.h>
-
 #include <vector>
 
 #include "cornerstone/base/params.h"
 #include "cornerstone/mapping/frame_match.h"
 #include "cornerstone/mapping/odometry_filter.h"
 
+namespace ceres {
+class Problem;
+}
+
 namespace cornerstone {
+
+class OdometryStepCost;
 
 struct FrameGraphParams {
   bool use = true;                          // false: no frames are kept, and the map is never drawn anew
@@ -25,8 +29,13 @@ struct FrameGraphParams {
   double match_turn_rad = 70 * M_PI / 180;  // of a camera with 90 degrees of view
   int match_tries = 24;                     // earlier frames, spread over those nearby
   double match_weight = 0.1;                // a frame meets some ten others with the same errors
-  double place_weight = 0.3;      // of the same when the newest frame alone is placed: its own error, once
-  double loss_sigmas = 2;         // of a match as a whole
+  double place_weight = 0.3;    // of the same when the newest frame alone is placed: its own error, once
+  double loss_sigmas = 2;       // of a match as a whole
+  double step_loss_sigmas = 3;  // of odometry: wheels slip
+  // Where wheels slip and nothing matches, the scans fitted to the map still tell the step, roughly: this fit
+  // is off the same way again and again.
+  double fitted_step_sigma_m = 0.02;
+  double fitted_step_sigma_rad = 0.5 * M_PI / 180;
   int solve_after_frames = 10;    // 2 m of way
   int redraw_looks_per_scan = 4;  // looks that are drawn anew with each scan: some 4 ms
   double redraw_shift_m = 0.01;   // a map that is off by less is left as it is: a fifth of a cell
@@ -67,13 +76,13 @@ class FrameGraph {
     std::size_t earlier = 0, later = 0;
     FrameMatch match;
   };
-  struct MatchBlocks {
+  struct Blocks {
     double* earlier;
     double* later;
-    double* calibration;
+    double* shared;  // rates or calibration
   };
-  void addMatch(ceres::Problem& problem, const FrameMatch& match, double weight,
-                const MatchBlocks& blocks) const;
+  void addStep(ceres::Problem& problem, const OdometryStepCost& cost, const Blocks& blocks) const;
+  void addMatch(ceres::Problem& problem, const FrameMatch& match, double weight, const Blocks& blocks) const;
   PoseEstimate placeNewest(const PoseEstimate& prior, std::size_t first_match) const;
   std::vector<std::size_t> framesNearby(const Pose2& map_from_base) const;
 

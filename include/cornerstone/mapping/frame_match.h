@@ -22,7 +22,7 @@ struct FrameMatchParams {
   double loss_sigmas = 0.5;    // residuals beyond count less (Cauchy): stereo's errors have long tails
   double wall_sigma_m = 0.01;  // of the walls themselves: what looks straight is not quite
   int min_pieces = 25;         // that meet
-  double min_agreeing_share = 0.5;  // of the pieces in the other's view
+  double min_agreeing_share = 0.5;  // of the pieces in the other's view, to three sigmas
   double min_normal_cosine = 0.9;   // of the angle between pieces of one wall (26 degrees)
   // Errors of a match that no number of pieces averages away: both looks are bent alike where they see alike.
   double floor_sigma_m = 0.01;

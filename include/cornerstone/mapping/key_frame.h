@@ -26,6 +26,7 @@ struct KeptLook {
 struct KeyFrame {
   Pose2 odom_from_base;
   Pose2 map_from_base;
+  Pose2 step_as_fitted;  // from the frame before to this one, as the scans fitted to the map have it
   Pose2 base_from_sensor;
   double correlated_beams = 1;
   double calibration_sigma_per_m = 0;

@@ -34,6 +34,9 @@ struct PoseEvidence {
   bool with_prior = false;   // only poses near a prior were looked at
 };
 
+// By how many standard deviations the first of several rigid poses leads the best of the others, or no pose.
+double leadOf(const std::vector<PoseScore>& poses, double square_m);
+
 // The evidence for the first of several different poses, best elastic score first, in squares of square_m.
 PoseEvidence weighPoses(const std::vector<JudgedPose>& poses, double square_m);
 

@@ -11,10 +11,11 @@
 namespace cornerstone {
 
 struct RefinementOptions {
-  double first_reach_m = 0.3;                         // search radius at the start
-  double last_reach_m = 0.1;                          // and at the end
-  int rounds = 5;                                     // of choosing partners
-  std::size_t max_edges = 2000;                       // of each map, evenly chosen: millimetres need no more
+  double first_reach_m = 0.3;    // search radius at the start
+  double last_reach_m = 0.1;     // and at the end
+  double cell_m = 0.05;          // of the coarser map: its walls are right to a part of it
+  int rounds = 5;                // of choosing partners
+  std::size_t max_edges = 2000;  // of each map, evenly chosen: millimetres need no more
   std::optional<Eigen::Vector2d> focus_in_current_m;  // edges near it weigh most, as a Gaussian; empty: alike
   double focus_radius_m = 4;                          // its standard deviation
   double min_spread = 0.05;  // of the edges around the focus: with less the whole map decides

@@ -42,6 +42,7 @@ class EvidenceGrid {
   }
   const Eigen::Vector2f& origin() const { return counts_.origin_m; }
   float squaresPerMetre() const { return per_square_; }
+  const SquareCounts& counts() const { return counts_; }
   bool known(const Eigen::Vector2f& point_m) const { return counts_.known(point_m); }
   double squareSize() const { return counts_.square_m; }
   // Of all squares that say something.

@@ -17,6 +17,7 @@ struct MapEvidence {
   std::vector<EdgePoint> edges;     // thinned, in an order without pattern
   std::vector<EdgeSample> samples;  // the same, for the grids
   Eigen::Vector2d middle_m;         // mean of the edges
+  double cell_m;                    // of the map itself
 };
 
 struct EvidencePair {

@@ -24,6 +24,9 @@ struct PoseDistance {
   bool apart(const Pose2& a, const Pose2& b) const;
 };
 
+// Walks each pose uphill by small steps of a look's score.
+void settlePoses(const EvidencePair& maps, std::vector<Hypothesis>& poses, const RegistrationParams& params);
+
 std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<Pose2>& proposals,
                                     const RegistrationParams& params);
 

@@ -21,6 +21,8 @@ struct RegistrationParams {
   // Squares and reach of the evidence that judges the best proposals: maps bend by some 0.1 m.
   double fine_cell_m = 0.1;
   double fine_reach_m = 0.25;
+  // Reach where the lead over other poses is in doubt: walls that meet meet within a cell or two.
+  double close_reach_m = 0.12;
   // An edge on free space counts as much against a pose as an edge on an edge counts for it.
   double contradiction = 1.0;
   // The same on the coarse squares. They forgive what maps bend by, so what contradicts there is wrong: a

@@ -37,7 +37,8 @@ class RegistrationTracker {
 
   // The outcome of one attempt to register, at `time_s` on any rising clock. centre_m: middle of the known
   // part of the current map, in its own frame, where agreement is measured. No answer is not a contradiction.
-  void update(const std::optional<Registration>& answer, const Eigen::Vector2d& centre_m, double time_s);
+  // True: the estimate now rests on this answer; what else the answer brings holds with it.
+  bool update(const std::optional<Registration>& answer, const Eigen::Vector2d& centre_m, double time_s);
   // The other map began anew: nothing known holds any longer.
   void lose(const std::string& reason);
 

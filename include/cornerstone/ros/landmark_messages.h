@@ -13,9 +13,8 @@
 
 namespace cornerstone {
 
-Corner toMessage(const CornerLandmark& corner);
-// InputError when a field is not finite or the kind is unknown.
-CornerLandmark fromMessage(const Corner& message);
+// now_s: on the clock of the corner's since_s.
+Corner toMessage(const CornerLandmark& corner, double now_s);
 
 // The state, pose, covariance and evidence; names, frames and epochs are the caller's to fill in.
 MapRegistration toMessage(const RegistrationTracker& tracker, double now_s);

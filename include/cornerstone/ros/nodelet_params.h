@@ -47,6 +47,14 @@ struct OccupancyMapperParams {  // config/mapper.yaml
 };
 void describe(ParamVisitor& visitor, OccupancyMapperParams& params);
 
+// A rough pose of this robot's map in the reference robot's, known beforehand: a common start, a measured
+// one.
+struct InitialPose {
+  bool known = false;  // false: any pose is possible
+  Pose2 reference_from_current;
+};
+void describe(ParamVisitor& visitor, InitialPose& pose);
+
 struct RegistrationNodeletParams {  // config/registration.yaml
   std::string robot = "robot";
   std::string reference_robot;  // empty, or this robot itself: it is the reference and registers to nobody
@@ -54,6 +62,8 @@ struct RegistrationNodeletParams {  // config/registration.yaml
   std::string reference_map_frame;  // empty: <reference robot>/map
   double period_s = 1.0;            // between attempts; maps change little in less
   double tf_period_s = 0.1;         // of the shared frame, while there is one
+  double tf_smoothing_s = 0.5;      // time constant with which it follows a new estimate: no jumps
+  InitialPose initial;
   LandmarkParams landmarks;
   RegistrationParams registration;
   TrackerParams tracker;

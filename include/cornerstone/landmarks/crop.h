@@ -1,0 +1,28 @@
+// Parts of a map that share its cells: work is bounded by what is known, not by the grid that holds it.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "cornerstone/mapping/grid_map.h"
+
+namespace cornerstone {
+
+inline GridGeometry croppedGeometry(const GridGeometry& geometry, const cv::Rect& cells) {
+  GridGeometry crop = geometry;
+  crop.origin_x_m += cells.x * geometry.resolution_m;
+  crop.origin_y_m += cells.y * geometry.resolution_m;
+  crop.cols = cells.width;
+  crop.rows = cells.height;
+  return crop;
+}
+
+inline GridMap cropped(const GridMap& map, const cv::Rect& cells) {
+  return {croppedGeometry(map.geometry, cells), map.occupied(cells)};
+}
+
+// Its lower corner moved down to a multiple of `step` cells: squares of cells stay those of the whole map.
+inline cv::Rect aligned(const cv::Rect& cells, int step) {
+  return cv::Rect(cv::Point(cells.x / step * step, cells.y / step * step), cells.br());
+}
+
+}  // namespace cornerstone

@@ -1,0 +1,55 @@
+// Attempts to register one robot's map in another's, again and again as both grow. What an attempt learns of
+// a map is kept for the next one: landmarks are looked for only where the map changed. No ROS, no clock of
+// its own, one attempt at a time: it may run in a thread of its own.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cornerstone/landmarks/landmark_follower.h"
+#include "cornerstone/registration/register_maps.h"
+
+namespace cornerstone {
+
+struct RegistrationTask {
+  std::optional<GridMap> reference;  // empty: only landmarks of the current map are wanted
+  GridMap current;
+  RegistrationHints hints;
+  double time_s = 0;
+  bool reference_anew = false;  // the map began anew: nothing known of the old one holds
+  bool current_anew = false;
+};
+
+struct RegistrationAttempt {
+  Landmarks landmarks;  // of the current map
+  RegistrationOutcome outcome;
+  std::vector<std::pair<CornerLandmark, CornerLandmark>>
+      pairs;  // of the answer: in the reference, in the current
+};
+
+class MapRegistrar {
+ public:
+  MapRegistrar(const LandmarkParams& landmarks, const RegistrationParams& registration);
+
+  // Near the prior first. Where that no longer holds, the maps may say where the truth lies.
+  RegistrationAttempt attempt(const RegistrationTask& task);
+
+ private:
+  // What is known of one map.
+  struct Side {
+    LandmarkFollower follower;
+    std::optional<MapEvidence> evidence;
+
+    void update(const GridMap& map, double time_s, const RegistrationParams& params);
+    PreparedMap prepared() const { return {follower.landmarks(), *evidence}; }
+  };
+
+  LandmarkParams landmark_params_;
+  RegistrationParams params_;
+  Side reference_;
+  Side current_;
+};
+
+}  // namespace cornerstone
