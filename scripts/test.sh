@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/environment.sh
-scripts/setup.sh
+scripts/setup.sh scripts/test_packages.txt
 use_build
 
 report=build/test_report.txt
