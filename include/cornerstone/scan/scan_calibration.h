@@ -1,9 +1,9 @@
 // What a stereo rig gets wrong in every look alike, cameras turned against one another by a fraction of a
 // pixel. Nothing in one look shows it; looks at the same wall from near and far do (mapping/frame_graph.h).
 //
-// A camera turned by e about its upright axis shifts column x by f e (1 + (x / f)^2); turned about the optical
-// axis of the upper pair, by an amount that grows with x. With b a beam's bearing in the sensor frame,
-// tan b = -x / f and 1/Z = q / cos b, the inverse range q becomes
+// A camera turned by e about its upright axis shifts column x by f e (1 + (x / f)^2); turned about the
+// optical axis of the upper pair, by an amount that grows with x. With b a beam's bearing in the sensor
+// frame, tan b = -x / f and 1/Z = q / cos b, the inverse range q becomes
 //   q + (offset (1 + tan^2 b) + slope tan b) cos b
 // For cameras only, whose views end well before 90 degrees.
 #pragma once
