@@ -213,7 +213,8 @@ bool FrameGraph::solveDue() const {
   return frames_.size() >= solved_frames_ + std::max(anew, frames_.size() / kShare);
 }
 
-GraphSolution FrameGraph::solve() {
+std::optional<GraphSolution> FrameGraph::solve() {
+  if (frames_.empty()) return std::nullopt;
   solved_frames_ = frames_.size();
   std::vector<PoseBlock> poses;
   for (const KeyFrame& frame : frames_) poses.push_back(blockOf(frame.map_from_base));
@@ -258,8 +259,12 @@ GraphSolution FrameGraph::solve() {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 
+  if (!summary.IsSolutionUsable()) return std::nullopt;
   GraphSolution solution;
-  for (const PoseBlock& pose : poses) solution.map_from_base.push_back(poseOf(pose));
+  for (const PoseBlock& pose : poses) {
+    solution.map_from_base.push_back(poseOf(pose));
+    if (!solution.map_from_base.back().isFinite()) return std::nullopt;
+  }
   solution.rates = {rates[0], rates[1], rates[2]};
   solution.calibration = {calibration[0], calibration[1]};
   return solution;

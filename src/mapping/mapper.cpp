@@ -108,8 +108,8 @@ void Mapper::straighten() {
   if (redraw_) {
     redraw();
   } else if (graph_.solveDue()) {
-    GraphSolution solution = graph_.solve();
-    if (movesTheMap(solution)) redraw_.emplace(params_.grid, std::move(solution));
+    std::optional<GraphSolution> solution = graph_.solve();
+    if (solution && movesTheMap(*solution)) redraw_.emplace(params_.grid, std::move(*solution));
   }
 }
 

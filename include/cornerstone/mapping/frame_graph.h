@@ -7,6 +7,7 @@
 // errors, so each counts by `match_weight`; a false one is held off by a Cauchy loss.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cornerstone/base/params.h"
@@ -63,7 +64,7 @@ class FrameGraph {
   // they say of things that came or went must not be lost when the map is drawn anew.
   void addLook(const RangeScan& scan, const Pose2& odom_from_base);
   bool solveDue() const;
-  GraphSolution solve();
+  std::optional<GraphSolution> solve();  // none: there was no frame, or no finite solution
   // Poses of the frames that the solution knows, and of those added since, moved as the last of these.
   void adopt(const GraphSolution& solution);
 
