@@ -3,6 +3,7 @@
 import copy
 import os
 import tempfile
+import time
 import unittest
 
 import rosbag
@@ -131,8 +132,18 @@ class Faults(unittest.TestCase):
             self.assertTrue("/nowhere/map" in answer.message or "finite" in answer.message, answer.message)
         self.assertEqual(self.occupied_cells(), cells)
 
+    def settled(self, key):
+        """The count when two reports in a row agree: what an earlier play left under way has come in."""
+        count, deadline = None, time.monotonic() + 15
+        while time.monotonic() < deadline:
+            before, count = count, self.diagnostics.count("/a/mapper", key)
+            if count == before:
+                break
+            time.sleep(1.5)
+        return count
+
     def test_4_scans_without_odometry_are_dropped_and_counted(self):
-        before = self.diagnostics.count("/a/mapper", "dropped"), self.diagnostics.count("/a/mapper", "processed")
+        before = self.settled("dropped"), self.settled("processed")
         self.play_changed(without_odometry)
         # What odometry of the play before had left in tf ended with it.
         after = self.diagnostics.count("/a/mapper", "dropped"), self.diagnostics.count("/a/mapper", "processed")
@@ -142,8 +153,7 @@ class Faults(unittest.TestCase):
         self.assertTrue(any("a/odom -> a/base_link" in cause for cause in causes), causes)
 
     def test_5_odometry_that_is_nan_is_no_odometry(self):
-        before = self.diagnostics.count("/a/mapper", "processed")
-        dropped = self.diagnostics.count("/a/mapper", "dropped")
+        before, dropped = self.settled("processed"), self.settled("dropped")
         self.play_changed(nan_odometry)
         self.assertLess(self.diagnostics.count("/a/mapper", "processed"), before + LATE_SCANS)
         self.assertGreater(self.diagnostics.count("/a/mapper", "dropped"), dropped + 20)
