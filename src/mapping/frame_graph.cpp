@@ -54,25 +54,8 @@ void describe(ParamVisitor& visitor, FrameGraphParams& params) {
   visitor.field("solve_after_frames", params.solve_after_frames);
   visitor.field("redraw_looks_per_scan", params.redraw_looks_per_scan);
   visitor.field("redraw_shift_m", params.redraw_shift_m);
-  visitor.group("piece", [&] {
-    visitor.field("beams_each_side", params.piece.beams_each_side);
-    visitor.field("max_sigmas", params.piece.max_sigmas);
-    visitor.field("max_scatter_m", params.piece.max_scatter_m);
-    visitor.field("max_range_m", params.piece.max_range_m);
-    visitor.field("bearing_sigma_beams", params.piece.bearing_sigma_beams);
-    visitor.field("min_incidence", params.piece.min_incidence);
-  });
-  visitor.group("match", [&] {
-    visitor.field("gate_m", params.match.gate_m);
-    visitor.field("loss_sigmas", params.match.loss_sigmas);
-    visitor.field("wall_sigma_m", params.match.wall_sigma_m);
-    visitor.field("min_pieces", params.match.min_pieces);
-    visitor.field("min_agreeing_share", params.match.min_agreeing_share);
-    visitor.field("min_normal_cosine", params.match.min_normal_cosine);
-    visitor.field("floor_sigma_m", params.match.floor_sigma_m);
-    visitor.degrees("floor_sigma_deg", params.match.floor_sigma_rad);
-    visitor.field("floor_calibration_per_m", params.match.floor_calibration_per_m);
-  });
+  visitor.group("piece", [&] { describe(visitor, params.piece); });
+  visitor.group("match", [&] { describe(visitor, params.match); });
 }
 
 void requireValid(const FrameGraphParams& params) {
@@ -90,21 +73,8 @@ void requireValid(const FrameGraphParams& params) {
   requireWithin(params.solve_after_frames, 1, 100000, "solve_after_frames");
   requireWithin(params.redraw_looks_per_scan, 2, 10000, "redraw_looks_per_scan");
   requireWithin(params.redraw_shift_m, 0, 10, "redraw_shift_m");
-  requireWithin(params.piece.beams_each_side, 1, 100, "beams_each_side");
-  requireWithin(params.piece.max_sigmas, 0, 100, "max_sigmas");
-  requireWithin(params.piece.max_scatter_m, 0, 1, "max_scatter_m");
-  requirePositive(params.piece.max_range_m, "max_range_m");
-  requireWithin(params.piece.bearing_sigma_beams, 0, 100, "bearing_sigma_beams");
-  requireWithin(params.piece.min_incidence, 0, 1, "min_incidence");
-  requireWithin(params.match.gate_m, 0.02, 5, "gate_m");
-  requireWithin(params.match.loss_sigmas, 0.1, 100, "loss_sigmas");
-  requireWithin(params.match.wall_sigma_m, 1e-4, 1, "wall_sigma_m");
-  requireWithin(params.match.min_pieces, 3, 10000, "min_pieces");
-  requireWithin(params.match.min_agreeing_share, 0, 1, "min_agreeing_share");
-  requireWithin(params.match.min_normal_cosine, 0, 1, "min_normal_cosine");
-  requireWithin(params.match.floor_sigma_m, 1e-5, 1, "floor_sigma_m");
-  requireWithin(params.match.floor_sigma_rad, 1e-5, 1, "floor_sigma_deg");
-  requireWithin(params.match.floor_calibration_per_m, 1e-6, 1, "floor_calibration_per_m");
+  requireValid(params.piece);
+  requireValid(params.match);
 }
 
 FrameGraph::FrameGraph(const FrameGraphParams& params, const OdometryNoise& odometry)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cornerstone/base/errors.h"
+
 namespace cornerstone {
 namespace {
 
@@ -100,7 +102,7 @@ FrameMatch quadraticOf(const Sums& sums, const Pose2& pose, const Eigen::Vector2
   const Matrix5d scaled =
       floor.asDiagonal() * ((information + information.transpose()) / 2) * floor.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix5d> axes(scaled);
-  constexpr double kObserved = 1e-6;
+  constexpr double kObserved = 1e-6;  // a thousand times vaguer than the floor: as good as nothing
   const Vector5d along = axes.eigenvectors().transpose() * floor.asDiagonal() * (temper * sums.gradient);
   FrameMatch match;
   match.earlier_from_later = pose;
@@ -117,6 +119,30 @@ FrameMatch quadraticOf(const Sums& sums, const Pose2& pose, const Eigen::Vector2
 }
 
 }  // namespace
+
+void describe(ParamVisitor& visitor, FrameMatchParams& params) {
+  visitor.field("gate_m", params.gate_m);
+  visitor.field("loss_sigmas", params.loss_sigmas);
+  visitor.field("wall_sigma_m", params.wall_sigma_m);
+  visitor.field("min_pieces", params.min_pieces);
+  visitor.field("min_agreeing_share", params.min_agreeing_share);
+  visitor.field("min_normal_cosine", params.min_normal_cosine);
+  visitor.field("floor_sigma_m", params.floor_sigma_m);
+  visitor.degrees("floor_sigma_deg", params.floor_sigma_rad);
+  visitor.field("floor_calibration_per_m", params.floor_calibration_per_m);
+}
+
+void requireValid(const FrameMatchParams& params) {
+  requireWithin(params.gate_m, 0.02, 5, "gate_m");
+  requireWithin(params.loss_sigmas, 0.1, 100, "loss_sigmas");
+  requireWithin(params.wall_sigma_m, 1e-4, 1, "wall_sigma_m");
+  requireWithin(params.min_pieces, 3, 10000, "min_pieces");
+  requireWithin(params.min_agreeing_share, 0, 1, "min_agreeing_share");
+  requireWithin(params.min_normal_cosine, 0, 1, "min_normal_cosine");
+  requireWithin(params.floor_sigma_m, 1e-5, 1, "floor_sigma_m");
+  requireWithin(params.floor_sigma_rad, 1e-5, 1, "floor_sigma_deg");
+  requireWithin(params.floor_calibration_per_m, 1e-6, 1, "floor_calibration_per_m");
+}
 
 std::optional<FrameMatch> matchFrames(const KeyFrame& earlier, const KeyFrame& later,
                                       const FrameMatchStart& start, const FrameMatchParams& params) {

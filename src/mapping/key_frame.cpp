@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "cornerstone/base/errors.h"
+
 namespace cornerstone {
 namespace {
 
@@ -47,12 +49,31 @@ WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPiece
 }
 
 WallPiece moved(const Pose2& base_from_sensor, const WallPiece& piece) {
+  if (!piece.valid) return {};
   const Eigen::Matrix2d rotation = base_from_sensor.rotation();
   return {base_from_sensor * piece.point_m, rotation * piece.normal, piece.sigma_m,
           rotation * piece.by_calibration, piece.valid};
 }
 
 }  // namespace
+
+void describe(ParamVisitor& visitor, WallPieceParams& params) {
+  visitor.field("beams_each_side", params.beams_each_side);
+  visitor.field("max_sigmas", params.max_sigmas);
+  visitor.field("max_scatter_m", params.max_scatter_m);
+  visitor.field("max_range_m", params.max_range_m);
+  visitor.field("bearing_sigma_beams", params.bearing_sigma_beams);
+  visitor.field("min_incidence", params.min_incidence);
+}
+
+void requireValid(const WallPieceParams& params) {
+  requireWithin(params.beams_each_side, 1, 100, "beams_each_side");
+  requireWithin(params.max_sigmas, 0, 100, "max_sigmas");
+  requireWithin(params.max_scatter_m, 0, 1, "max_scatter_m");
+  requirePositive(params.max_range_m, "max_range_m");
+  requireWithin(params.bearing_sigma_beams, 0, 100, "bearing_sigma_beams");
+  requireWithin(params.min_incidence, 0, 1, "min_incidence");
+}
 
 KeyFrame makeKeyFrame(const RangeScan& scan, const Pose2& odom_from_base, const Pose2& map_from_base,
                       const WallPieceParams& params) {
@@ -64,8 +85,10 @@ KeyFrame makeKeyFrame(const RangeScan& scan, const Pose2& odom_from_base, const 
   frame.calibration_sigma_per_m = scan.calibration_sigma_per_m;
   for (std::size_t i = 0; i < scan.beams.size(); ++i) {
     frame.bearings_rad.push_back(scan.beams[i].bearing_rad);
-    const WallPiece piece = pieceAt(scan.beams, i, params);
-    frame.pieces.push_back(piece.valid ? moved(scan.base_from_sensor, piece) : WallPiece{});
+    WallPiece piece = pieceAt(scan.beams, i, params);
+    // Nothing is asked of a laser's calibration; at 90 degrees its derivative would have no bound.
+    if (scan.calibration_sigma_per_m == 0) piece.by_calibration.setZero();
+    frame.pieces.push_back(moved(scan.base_from_sensor, piece));
   }
   frame.looks.push_back({scan, {}});
   return frame;

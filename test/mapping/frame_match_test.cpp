@@ -58,6 +58,33 @@ TEST(FrameMatch, KnowsHowTheMotionHangsOnTheCalibration) {
   EXPECT_LT(lengthAt(*match, truth, needed), 1);
 }
 
+// A laser sees to 90 degrees on both sides, where a camera's calibration has no meaning.
+TEST(FrameMatch, ALaserWithHalfACircleOfViewHasNoCalibrationInItsMatches) {
+  const test::Room room = test::officeRoom();
+  const auto frame = [&](const Pose2& pose) {
+    RangeScan scan;
+    for (int degree = -90; degree <= 90; ++degree) {
+      Beam beam;
+      beam.bearing_rad = degree * M_PI / 180;
+      beam.width_rad = M_PI / 180;
+      const auto range_m = room.rangeFrom(pose.translation(), pose.yaw_rad + beam.bearing_rad);
+      beam.hit = range_m.has_value();
+      beam.range_m = range_m.value_or(0);
+      beam.sigma_m = 0.02;
+      scan.beams.push_back(beam);
+    }
+    return makeKeyFrame(scan, pose, pose, {});
+  };
+  const Pose2 before{2, 2, 0.7}, after{2.2, 2.15, 0.8};
+  const Pose2 truth = before.inverse() * after;
+  const auto match = matchFrames(frame(before), frame(after), {truth, {}}, {});
+  ASSERT_TRUE(match);
+  EXPECT_EQ(match->sqrt_information.rightCols<2>().norm(), 0);
+  EXPECT_LT(lengthAt(*match, truth, {}), 1);
+  const Pose2 beside{truth.x_m + 0.1, truth.y_m, truth.yaw_rad};
+  EXPECT_GT(lengthAt(*match, beside, {}), 2);  // the motion is known
+}
+
 TEST(FrameMatch, LooksAtOtherWallsDoNotMatch) {
   const auto match = matchFrames(frameAt({2, 2, 0.7}), frameAt({2, 2, -2.4}), {{0, 0, -3.1}, {}}, {});
   EXPECT_FALSE(match);

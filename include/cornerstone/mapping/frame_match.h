@@ -30,6 +30,9 @@ struct FrameMatchParams {
   double floor_calibration_per_m = 0.003;  // 0.03 px over f B = 9.6 px m
 };
 
+void describe(ParamVisitor& visitor, FrameMatchParams& params);
+void requireValid(const FrameMatchParams& params);  // throws InputError naming the parameter
+
 struct FrameMatch {
   Pose2 earlier_from_later;
   Matrix5d sqrt_information = Matrix5d::Zero();  // U

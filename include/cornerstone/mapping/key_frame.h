@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "cornerstone/base/params.h"
 #include "cornerstone/base/pose2.h"
 #include "cornerstone/scan/scan_calibration.h"
 
@@ -46,6 +47,9 @@ struct WallPieceParams {
   double min_incidence =
       0.17;  // sine of the angle between beam and wall (10 degrees): flatter ones say little
 };
+
+void describe(ParamVisitor& visitor, WallPieceParams& params);
+void requireValid(const WallPieceParams& params);  // throws InputError naming the parameter
 
 KeyFrame makeKeyFrame(const RangeScan& scan, const Pose2& odom_from_base, const Pose2& map_from_base,
                       const WallPieceParams& params);
