@@ -13,7 +13,7 @@ WIDTH, HEIGHT, FOCAL_PX, BASELINE_M = 160, 120, 80.0, 0.12
 
 
 def image(encoding="mono8", width=WIDTH, height=HEIGHT, data=None, frame="a/reference_optical"):
-    bytes_per_pixel = {"mono8": 1, "bgr8": 3, "32FC1": 4, "16UC1": 2}.get(encoding, 1)
+    bytes_per_pixel = {"mono8": 1, "bgr8": 3, "32FC1": 4, "16UC1": 2, "mono16": 2}.get(encoding, 1)
     message = Image(width=width, height=height, encoding=encoding, step=width * bytes_per_pixel)
     message.data = bytes(width * height * bytes_per_pixel) if data is None else data
     message.header.frame_id = frame

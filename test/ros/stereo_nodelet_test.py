@@ -214,7 +214,7 @@ class StereoNodelet(StageCase):
         wrong_step.step = 10
         self.send(wrong_step, image())
         self.wait_for_drop("/a/reference/image_rect")
-        for encoding in ("bgr8", "16UC1"):
+        for encoding in ("bgr8", "mono16"):
             self.processed_after(lambda e=encoding: self.send(image(e), image(e)))
         self.assert_lives()
 
