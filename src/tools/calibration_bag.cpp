@@ -20,9 +20,11 @@ namespace {
 using Corners = std::vector<cv::Point2f>;
 using CornersByStamp = std::map<ros::Time, Corners>;
 
-// Corners that have moved by less, of the image's width, show the same board once more: it adds time, no
-// knowledge. Half of it: twice as many sets of a slow hand.
-constexpr double kSameBoard_width = 0.05;
+// A board none of whose corners has moved by more, of the image's width, is the same once more: it adds time,
+// no knowledge. Where so many sets are left that solving takes minutes, they must differ by more.
+constexpr double kSameBoard_width = 0.01;
+constexpr double kWider = 1.5;
+constexpr std::size_t kMostSets = 60;
 
 // Every topic must be there and hold images.
 void requireTopics(rosbag::Bag& bag, const CalibrationBag& source) {
@@ -69,10 +71,10 @@ const Corners* at(const CornersByStamp& corners, ros::Time stamp, double toleran
   return nearest;
 }
 
-double meanDistance(const Corners& a, const Corners& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += cv::norm(a[i] - b[i]);
-  return sum / static_cast<double>(a.size());
+double largestDistance(const Corners& a, const Corners& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, cv::norm(a[i] - b[i]));
+  return largest;
 }
 
 // Sets of the stamps at which the reference camera has seen a board.
@@ -83,7 +85,7 @@ std::vector<CameraViews> setsOf(const std::vector<CornersByStamp>& seen, double 
   for (std::size_t i = 0; i < views.size(); ++i) views[i].name = names[i];
   for (const auto& [stamp, corners] : seen[0]) {
     const auto same = [&, &board = corners](const Corners& kept) {
-      return meanDistance(kept, board) < same_board_px;
+      return largestDistance(kept, board) <= same_board_px;
     };
     if (std::any_of(views[0].corners.begin(), views[0].corners.end(), same)) continue;
     std::vector<Corners> set{corners};
@@ -118,7 +120,11 @@ std::vector<CameraViews> viewsInBag(const CalibrationBag& source, const Chessboa
     if (!corners.empty())
       seen[static_cast<std::size_t>(camera - source.topics.begin())][image.stamp] = corners;
   }
-  return setsOf(seen, source.tolerance_s, kSameBoard_width * size.width);
+  double same_board_px = kSameBoard_width * size.width;
+  std::vector<CameraViews> views = setsOf(seen, source.tolerance_s, same_board_px);
+  while (views[0].corners.size() > kMostSets)
+    views = setsOf(seen, source.tolerance_s, same_board_px *= kWider);
+  return views;
 }
 
 }  // namespace cornerstone

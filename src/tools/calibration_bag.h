@@ -18,7 +18,7 @@ struct CalibrationBag {
 };
 
 // The boards by camera and set; `size` becomes that of the images. Sets whose board lies where an earlier
-// one's lies are left out, so that a board held still counts once. InputError names the file, and the topic
+// one's lies are left out: a board held still counts once. InputError names the file, and the topic
 // at fault.
 std::vector<CameraViews> viewsInBag(const CalibrationBag& bag, const Chessboard& board, cv::Size& size);
 
