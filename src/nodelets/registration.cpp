@@ -209,9 +209,11 @@ class RegistrationNodelet : public nodelet::Nodelet {
   // The shared frame from all that is known now.
   void refresh() {
     if (!registers_) return;
+    const RegistrationState before = shared_.state;
     shared_ = links_->shared(centre_m_, ros::Time::now().toSec());
     if (shared_.state == RegistrationState::kNone && !refusal_.empty()) shared_.reason = refusal_;
     if (shared_.state != RegistrationState::kRegistered) smoother_->reset();
+    if (shared_.state != before) topics_->publishRegistration(shared_, *robots_);  // at once
   }
 
   // In its own map; empty while tf does not say.
