@@ -16,7 +16,7 @@ class TileFollower {
   bool empty() const { return !tiles_; }
   GridMap map() const { return tiles_ ? tiles_->assemble() : GridMap{}; }
   std::uint32_t epoch() const { return epoch_.value_or(0); }  // 0: nothing was heard yet
-  std::uint32_t version() const { return version_; }  // of the newest tiles
+  std::uint32_t version() const { return version_; }          // of the newest tiles
 
  private:
   std::optional<TileMap> tiles_;
