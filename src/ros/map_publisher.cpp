@@ -45,7 +45,10 @@ void MapPublisher::publish(const Mapper& mapper) {
   const bool new_tile_subscriber = tiles_.getNumSubscribers() > tile_subscribers_;
   map_subscribers_ = map_.getNumSubscribers();
   tile_subscribers_ = tiles_.getNumSubscribers();
-  if (grid.empty()) return;
+  if (grid.empty()) {
+    if (anew && published_epoch_ != 0) announceEmpty(mapper, header);
+    return;
+  }
   const auto changed = grid.changedTiles(anew ? 0 : published_version_);
   if (anew || new_map_subscriber) published_geometry_ = GridGeometry{};
   if (!changed.empty() || new_map_subscriber) publishMap(grid, changed, header);
@@ -58,6 +61,16 @@ void MapPublisher::publish(const Mapper& mapper) {
   }
   published_version_ = grid.version();
   published_epoch_ = epochOf(mapper);
+}
+
+// Others must not use the old map's frame until this robot sees something.
+void MapPublisher::announceEmpty(const Mapper& mapper, const std_msgs::Header& header) {
+  MapTiles nothing = tilesOf(mapper, {}, header);
+  nothing.complete = true;
+  tiles_.publish(nothing);
+  published_epoch_ = epochOf(mapper);
+  published_version_ = 0;
+  published_geometry_ = GridGeometry{};
 }
 
 void MapPublisher::publishMap(const OccupancyGrid& grid, const std::vector<TileIndex>& changed,

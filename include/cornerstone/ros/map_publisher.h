@@ -19,6 +19,7 @@ class MapPublisher {
   void publish(const Mapper& mapper);
 
  private:
+  void announceEmpty(const Mapper& mapper, const std_msgs::Header& header);
   void publishMap(const OccupancyGrid& grid, const std::vector<TileIndex>& changed,
                   const std_msgs::Header& header);
   MapTiles tilesOf(const Mapper& mapper, const std::vector<TileIndex>& tiles,
