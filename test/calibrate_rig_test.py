@@ -136,6 +136,20 @@ class CalibrateRig(program_case.ProgramCase):
         picture = cv2.imread(str(self.folder / "out" / "epipolar.png"))
         self.assertEqual(picture.shape, (SIZE[1], 2 * SIZE[0] + 10, 3))
 
+    def test_ros_reads_the_calibration(self):
+        try:
+            import camera_calibration_parsers
+        except ImportError:
+            self.skipTest("package python3-camera-calibration-parsers is not installed")
+        self.render(sets=6)
+        self.calibrate("reference", "right", *self.BOARD_OPTIONS)
+        for camera in ("reference", "right"):
+            name, info = camera_calibration_parsers.readCalibration(str(self.folder / "out" / f"{camera}.yaml"))
+            self.assertEqual((name, info.width, info.height, info.distortion_model), (camera, *SIZE, "plumb_bob"))
+            for key, values in (("camera_matrix", info.K), ("rectification_matrix", info.R), ("projection_matrix", info.P),
+                                ("distortion_coefficients", info.D)):
+                numpy.testing.assert_allclose(values, self.info(camera)[key]["data"], rtol=0, atol=1e-9)
+
     def test_bad_input(self):
         self.render(sets=2)
         board = ("--board", "8x6", "--square", SQUARE_M, "--out", "out")

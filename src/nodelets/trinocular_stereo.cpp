@@ -12,6 +12,7 @@
 #include "cornerstone/ros/point_messages.h"
 #include "cornerstone/ros/stereo_reconfigure.h"
 #include "cornerstone/stereo/disparity_picture.h"
+#include "cornerstone/stereo/rig_check.h"
 #include "nodelets/factories.h"
 #include "nodelets/image_sets.h"
 #include "nodelets/nodelet_start.h"
@@ -23,11 +24,6 @@ namespace {
 // A set waits this long for calibrations: connections come one by one, and drivers repeat camera_info with
 // every image.
 constexpr double kCalibrationWait_s = 2;
-
-// Fewer pixels with texture that have an answer, in so many sets on end: the images do not fit the
-// calibrations.
-constexpr double kLeastMatched = 0.1;
-constexpr int kPoorSets = 10;
 
 }  // namespace
 
@@ -51,7 +47,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     reconfigure_->setCallback([this](StereoConfig& config, unsigned) { reconfigure(config); });
     diagnostics_.emplace(node, getPrivateNodeHandle(), "stereo");
     advertise(node);
-    cameras_.emplace(node, params_, [this] { matchHeld(); });
+    cameras_.emplace(node, params_, [this] { takeCalibrations(); });
     sets_.emplace(node, params_, *diagnostics_, [this](const ImageSet& set) {
       cameras_->uncalibrated(set).empty() ? match(set) : hold(set);
     });
@@ -72,12 +68,18 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     try {
       const StereoParams changed = changedBy(config, params_.stereo);
       matcher_.emplace(changed);
+      rig_check_.emplace(changed);
       params_.stereo = changed;
       config_ = config;
     } catch (const InputError& error) {
       NODELET_WARN_STREAM("refused: " << error.what());
       config = config_;
     }
+  }
+
+  void takeCalibrations() {
+    rig_check_.emplace(params_.stereo);
+    matchHeld();
   }
 
   void matchHeld() {
@@ -115,29 +117,18 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
       requireUsable(images, rig);
       if (isWanted()) {
         matcher_->match(images, rig, disparity_);
-        countPoor();
+        rig_check_->look(images, disparity_);
+        if (!rig_check_->complaint().empty()) throw InputError(rig_check_->complaint());
         publish(images.reference, set.images[0]->header);
       }
-      diagnostics_->complain(complaintOf(set));
+      const bool third_is_missing = params_.third_camera && !set.images[2];
+      diagnostics_->complain(third_is_missing ? cameras_->nameOf(2) + " is silent: two cameras go on alone"
+                                              : "");
       diagnostics_->processed((ros::WallTime::now() - start).toSec());
     } catch (const InputError& error) {
       diagnostics_->complain(error.what());
       diagnostics_->dropped(error.what());
     }
-  }
-
-  void countPoor() {
-    const std::optional<double> share = matchedShare(disparity_);
-    if (share) poor_sets_ = *share < kLeastMatched ? poor_sets_ + 1 : 0;
-  }
-
-  std::string complaintOf(const ImageSet& set) const {
-    if (poor_sets_ >= kPoorSets)
-      return "hardly a pixel matches: cameras swapped, calibrations of another rig, or images of different "
-             "instants";
-    if (params_.third_camera && !set.images[2])
-      return cameras_->nameOf(2) + " is silent: two cameras go on alone";
-    return {};
   }
 
   bool isWanted() const {
@@ -165,13 +156,13 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
 
   TrinocularStereoParams params_;
   std::optional<StereoMatcher> matcher_;
+  std::optional<RigCheck> rig_check_;
   std::optional<StageDiagnostics> diagnostics_;
   std::optional<StereoCameras> cameras_;
   std::optional<ImageSets> sets_;
   std::deque<ImageSet> held_;  // complete sets that came before the calibrations, oldest first
   ros::WallTimer held_timer_;
   Disparity disparity_;
-  int poor_sets_ = 0;  // on end, see kPoorSets
   cv::Mat3b picture_;
   ros::Publisher disparity_publisher_;
   ros::Publisher sigma_publisher_;

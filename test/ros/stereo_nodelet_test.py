@@ -114,19 +114,38 @@ class StereoNodelet(StageCase):
         self.assertEqual(rospy.get_param("/a/trinocular_stereo/stereo/max_disparity_px"), 16)
         self.assert_lives()
 
+    def listen(self):
+        """Somebody wants disparities: without, nothing is matched."""
+        recorder = chain.Recorder({"/a/disparity": DisparityImage})
+        self.addCleanup(recorder.subscribers[0].unregister)
+        chain.wait_until(recorder.subscribers[0].get_num_connections, "the node as a publisher")
+        return recorder
+
     def test_swapped_cameras_are_found_out(self):
         self.start_stereo()
         reference, right, _ = scene()
-        self.answer_to("/a/disparity", DisparityImage, reference, right)
-        listener = rospy.Subscriber("/a/disparity", DisparityImage, lambda _: None)
-        self.addCleanup(listener.unregister)
-        chain.wait_until(listener.get_num_connections, "the node as a publisher")
+        recorder = self.listen()
         for _ in range(15):
             self.send(right, reference)
         self.wait_for_complaint("cameras swapped")
+        self.wait_for_drop("cameras swapped")
+        self.assertLess(len(recorder.of("/a/disparity")), 10)
         for _ in range(3):
             self.send(reference, right)
-        chain.wait_until(lambda: not self.diagnostics.of(self.stage)["message"], "the complaint to end", 15)
+        chain.wait_until(lambda: self.diagnostics.of(self.stage)["level"] != 2, "the complaint to end", 15)
+        self.assert_lives()
+
+    def test_a_third_camera_that_contradicts_is_found_out(self):
+        self.start_stereo(("reference", "right", "top"), calibrations=(info(), info(shift=SHIFT), top_info(-2 * SHIFT)))
+        self.listen()
+        views = scene()
+        for _ in range(110):
+            self.send(*views)
+        self.wait_for_complaint("the third camera contradicts the first two")
+        self.wait_for_drop("the third camera contradicts the first two")
+        self.calibrate(info(), info(shift=SHIFT), top_info())
+        self.processed_after(lambda: self.send(*views))
+        chain.wait_until(lambda: self.diagnostics.of(self.stage)["level"] != 2, "the complaint to end", 15)
         self.assert_lives()
 
     def test_goes_on_when_the_third_camera_stops(self):
@@ -244,9 +263,7 @@ class StereoNodelet(StageCase):
 
     def test_no_set_of_a_burst_goes_uncounted(self):
         self.start_stereo(calibrations=(info(640, 480), info(640, 480, shift=SHIFT)), queue_size=1)
-        listener = rospy.Subscriber("/a/disparity", DisparityImage, lambda _: None)
-        self.addCleanup(listener.unregister)
-        chain.wait_until(listener.get_num_connections, "the node as a publisher")
+        self.listen()
         sets = 40
         for _ in range(sets):
             stamp = rospy.Time.now()
