@@ -121,7 +121,7 @@ class BadMessages(StageCase):
         self.start("registration", "registration", robot="b", reference_robot="a")
         own = self.publisher("/a/map_tiles", MapTiles)  # its namespace is /a: both topics are this one
         good = tile()
-        for message, named in ((tiles(), "no tiles"), (tiles(good, resolution=0.0), "resolution"),
+        for message, named in ((tiles(complete=False), "no tiles"), (tiles(good, resolution=0.0), "resolution"),
                                (tiles(good, resolution=NAN), "resolution"), (tiles(tile(png=b"")), "png"),
                                (tiles(tile(png=b"\x89PNG no picture")), "png"), (tiles(tile(png=good.png[:40])), "png"),
                                (tiles(MapTile(col=0, row=0, size=32, png=good.png)), "png"),
