@@ -148,7 +148,7 @@ void rangePart(const World& world) {
       "with one. Error: median of |range - truth| in mm, by the true distance. cornerstone: its scan; the "
       "peers: "
       "the nearest pixel of the column, the rule of depthimage_to_laserscan.\n",
-      ScanParams().z_min_m, ScanParams().z_max_m, kViews);
+      ScanParams().levels.front().z_min_m, ScanParams().levels.front().z_max_m, kViews);
   printHead({"image", "method", "phantom", "missed", "silent", "0-1 m", "1-2 m", "2-4 m", "4-8 m"});
   const std::vector<Pose2> poses = posesOf(world, kViews);
   for (const int width_px : {160, 320, 640}) compare(world, poses, width_px);

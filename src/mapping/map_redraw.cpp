@@ -4,8 +4,8 @@
 
 namespace cornerstone {
 
-MapRedraw::MapRedraw(const GridParams& params, GraphSolution solution)
-    : grid_(params), solution_(std::move(solution)) {}
+MapRedraw::MapRedraw(LocalMap blank, GraphSolution solution)
+    : map_(std::move(blank)), solution_(std::move(solution)) {}
 
 // The last frame still gathers looks: the running map has them, and they are drawn when the robot has left.
 bool MapRedraw::finished(const std::vector<KeyFrame>& frames) const {
@@ -25,7 +25,7 @@ void MapRedraw::drawNext(const std::vector<KeyFrame>& frames) {
     const KeptLook& look = frame.looks[look_];
     const Pose2 map_from_base = map_from_frame * look.frame_from_base;
     const LookMotion motion = last_ ? motionBetween(*last_, map_from_base) : kFirstLook;
-    grid_.insert(corrected(look.scan, solution_.calibration), map_from_base, motion);
+    map_.insert(corrected(look.scan, solution_.calibration), map_from_base, motion);
     last_ = map_from_base;
     ++look_;
   }

@@ -38,8 +38,11 @@ void requireSane(const Pose2& odom_from_base) {
 
 }  // namespace
 
-Mapper::Mapper(const MapperParams& params)
-    : params_(params), grid_(params.grid), filter_(params.odometry), graph_(params.graph, params.odometry) {
+Mapper::Mapper(const MapperParams& params, std::size_t levels)
+    : params_(params),
+      local_maps_{LocalMap(params.grid, levels)},
+      filter_(params.odometry),
+      graph_(params.graph, params.odometry) {
   requireValid(params.fit);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
@@ -69,7 +72,7 @@ double Mapper::newShare(const RangeScan& scan) const {
   if (ranges_m.empty()) return 1;
   const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
   std::nth_element(ranges_m.begin(), middle, ranges_m.end());
-  return grid_.newShare(*middle, motion());
+  return grid().newShare(*middle, motion());
 }
 
 MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
@@ -77,7 +80,7 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   predict(odom_from_base);
   const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
-  if (params_.fit_scans) fit = fitScan(scan, grid_, {filter_.pose(), newShare(scan)}, params_.fit);
+  if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
   if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
   contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
 
@@ -88,7 +91,7 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
   if (remembers) remember(raw, odom_from_base);
   if (insert) {
-    grid_.insert(scan, filter_.pose().map_from_base, motion());
+    current().insert(scan, filter_.pose().map_from_base, motion());
     last_inserted_ = filter_.pose().map_from_base;
   }
   if (remembers) straighten();
@@ -109,7 +112,8 @@ void Mapper::straighten() {
     redraw();
   } else if (graph_.solveDue()) {
     std::optional<GraphSolution> solution = graph_.solve();
-    if (solution && movesTheMap(*solution)) redraw_.emplace(params_.grid, std::move(*solution));
+    if (solution && movesTheMap(*solution))
+      redraw_.emplace(LocalMap(params_.grid, current().levelCount()), std::move(*solution));
   }
 }
 
@@ -134,13 +138,13 @@ void Mapper::redraw() {
   filter_.moveBy(correction, solution.rates);
   last_inserted_ = correction * *last_inserted_;
   graph_.adopt(solution);
-  grid_.becomeRedrawn(redraw_->takeGrid());
+  current().becomeRedrawn(redraw_->takeMap());
   redraw_.reset();
   ++redraws_;
 }
 
 void Mapper::reset() {
-  grid_.clear();
+  current().clear();
   filter_ = OdometryFilter(params_.odometry);
   graph_ = FrameGraph(params_.graph, params_.odometry);
   redraw_.reset();
@@ -154,12 +158,15 @@ void Mapper::reset() {
   ++epoch_;
 }
 
-void Mapper::load(const GridMap& map, const Pose2& map_from_base) {
+void Mapper::load(const std::vector<GridMap>& levels, const Pose2& map_from_base) {
   if (!map_from_base.isFinite()) throw InputError("map to load: the robot's pose in it is not finite");
-  OccupancyGrid loaded(params_.grid);
-  loaded.load(map);
+  if (levels.size() > current().levelCount())
+    throw InputError("map to load: it has more levels than this map");
+  LocalMap loaded(params_.grid, current().levelCount());
+  for (std::size_t level = 0; level < levels.size(); ++level)
+    if (!levels[level].occupied.empty()) loaded.load(level, levels[level]);
   reset();
-  grid_ = std::move(loaded);
+  current() = std::move(loaded);
   start_ = map_from_base;
   loaded_ = true;
 }

@@ -5,23 +5,23 @@
 #include <optional>
 
 #include "cornerstone/mapping/frame_graph.h"
-#include "cornerstone/mapping/occupancy_grid.h"
+#include "cornerstone/mapping/local_map.h"
 
 namespace cornerstone {
 
 class MapRedraw {
  public:
-  MapRedraw(const GridParams& params, GraphSolution solution);
+  MapRedraw(LocalMap blank, GraphSolution solution);
   // Draws at most `looks` of those that are left.
   void goOn(const std::vector<KeyFrame>& frames, int looks);
   bool finished(const std::vector<KeyFrame>& frames) const;
   const GraphSolution& solution() const { return solution_; }
-  OccupancyGrid takeGrid() { return std::move(grid_); }
+  LocalMap takeMap() { return std::move(map_); }
 
  private:
   void drawNext(const std::vector<KeyFrame>& frames);
 
-  OccupancyGrid grid_;
+  LocalMap map_;
   GraphSolution solution_;
   std::size_t frame_ = 0, look_ = 0;  // to draw next
   std::optional<Pose2> last_;         // map_from_base of the look before

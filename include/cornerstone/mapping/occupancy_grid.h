@@ -97,6 +97,8 @@ class OccupancyGrid {
   // Tiles changed after `version` (0: all), in a fixed order.
   std::vector<TileIndex> changedTiles(std::uint64_t version) const;
   GridMap tile(TileIndex index) const;  // kTileCells x kTileCells; kUnseen where there is nothing
+  // The tiles from low to high, both included, as one map.
+  GridMap tiles(TileIndex low, TileIndex high) const;
 
   const GridParams& params() const { return params_; }
   const EvidenceScale& scale() const { return scale_; }
@@ -113,11 +115,12 @@ class OccupancyGrid {
   Tile& tileFor(TileIndex index);
   void writeWindow(const CellWindow& window);
   void addHit(const SurfaceHit& hit);
-  GridGeometry tileGeometry(TileIndex index) const;
+  GridGeometry geometryOf(TileIndex low, TileIndex high) const;
 
   GridParams params_;
   EvidenceScale scale_;
   std::map<TileIndex, Tile> tiles_;
+  TileIndex low_, high_;  // the rectangle that the tiles span
   std::uint64_t version_ = 0;
 };
 
