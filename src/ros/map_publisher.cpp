@@ -30,9 +30,11 @@ GridPublisher::GridPublisher(ros::NodeHandle& node, const std::string& topic) {
 }
 
 void GridPublisher::publish(const GridState& state) {
-  if (state.grid.empty() ||
-      map_.getNumSubscribers() + updates_.getNumSubscribers() + metadata_.getNumSubscribers() == 0)
+  if (state.grid.empty()) {
+    announceEmpty(state);
     return;
+  }
+  if (map_.getNumSubscribers() + updates_.getNumSubscribers() + metadata_.getNumSubscribers() == 0) return;
   const bool whole = state.epoch != published_epoch_ || new_subscriber_ ||
                      !sameExtent(state.grid.geometry(), published_geometry_);
   if (whole) {
@@ -45,6 +47,17 @@ void GridPublisher::publish(const GridState& state) {
   published_geometry_ = state.grid.geometry();
   published_version_ = state.grid.version();
   published_epoch_ = state.epoch;
+}
+
+// After a reset nobody shall drive by the old map until this robot sees something: it was never seen,
+// wherever it was.
+void GridPublisher::announceEmpty(const GridState& state) {
+  if (published_epoch_ == 0 || published_epoch_ == state.epoch) return;
+  const cv::Mat1f unseen(published_geometry_.rows, published_geometry_.cols, kUnseen);
+  map_.publish(toOccupancyGrid({published_geometry_, unseen}, state.header));
+  published_epoch_ = state.epoch;
+  published_version_ = 0;
+  published_geometry_ = GridGeometry{};
 }
 
 void GridPublisher::publishWhole(const GridState& state) {
@@ -71,7 +84,10 @@ TilePublisher::TilePublisher(ros::NodeHandle& node, const std::string& topic, co
     : robot_(robot), tiles_(advertiseTelling<MapTiles>(node, topic, false, new_subscriber_)) {}
 
 void TilePublisher::publish(const GridState& state) {
-  if (state.grid.empty()) return;
+  if (state.grid.empty()) {
+    announceEmpty(state);
+    return;
+  }
   const bool complete = state.epoch != published_epoch_ || new_subscriber_;
   const auto changed = state.grid.changedTiles(complete ? 0 : published_version_);
   if (!changed.empty() && tiles_.getNumSubscribers() > 0) {
@@ -82,6 +98,16 @@ void TilePublisher::publish(const GridState& state) {
   new_subscriber_ = false;
   published_version_ = state.grid.version();
   published_epoch_ = state.epoch;
+}
+
+// Others must not use the old map's frame until this robot sees something.
+void TilePublisher::announceEmpty(const GridState& state) {
+  if (published_epoch_ == 0 || published_epoch_ == state.epoch) return;
+  MapTiles nothing = messageOf(state, {});
+  nothing.complete = true;
+  tiles_.publish(nothing);
+  published_epoch_ = state.epoch;
+  published_version_ = 0;
 }
 
 MapTiles TilePublisher::messageOf(const GridState& state, const std::vector<TileIndex>& tiles) const {

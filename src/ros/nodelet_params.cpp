@@ -42,6 +42,7 @@ void describe(ParamVisitor& visitor, InitialPose& pose) {
 void describe(ParamVisitor& visitor, RegistrationNodeletParams& params) {
   visitor.field("robot", params.robot);
   visitor.field("reference_robot", params.reference_robot);
+  visitor.field("other_robots", params.other_robots);
   visitor.group("frames", [&] { describe(visitor, params.frames); });
   visitor.field("reference_map_frame", params.reference_map_frame);
   visitor.field("period_s", params.period_s);

@@ -194,6 +194,17 @@ class Truth:
         return self.poses[min(near, key=lambda k: abs(self.times[k] - stamp_s))]
 
 
+def relative_errors(tf, robots, truths, span_s):
+    """[(m, degrees)] every half second: the second robot in the first one's body frame, by tf against the truth."""
+    (first, second), (stamp, end), errors = robots, span_s, []
+    while stamp < end:
+        known = pose_of_transform(tf.lookup_transform(f"{first}/base_link", f"{second}/base_link", rospy.Time(stamp)).transform)
+        true = truths[0].at(stamp).inverse() * truths[1].at(stamp)
+        errors.append((known.distance_to(true), known.angle_to_deg(true)))
+        stamp += 0.5
+    return errors
+
+
 def between_maps(tf_messages):
     """Every transform that links the two robots' maps, in any direction."""
     return [t for message in tf_messages for t in message.transforms

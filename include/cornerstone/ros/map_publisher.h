@@ -30,6 +30,7 @@ class GridPublisher {
   void publish(const GridState& state);
 
  private:
+  void announceEmpty(const GridState& state);
   void publishWhole(const GridState& state);
   void publishUpdate(const GridState& state, const std::vector<TileIndex>& changed);
 
@@ -46,6 +47,7 @@ class TilePublisher {
   void publish(const GridState& state);
 
  private:
+  void announceEmpty(const GridState& state);
   MapTiles messageOf(const GridState& state, const std::vector<TileIndex>& tiles) const;
 
   std::string robot_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cornerstone/landmarks/detect_corners.h"
 #include "cornerstone/mapping/mapper.h"
@@ -65,6 +66,9 @@ void describe(ParamVisitor& visitor, InitialPose& pose);
 struct RegistrationNodeletParams {  // config/registration.yaml
   std::string robot = "robot";
   std::string reference_robot;  // empty, or this robot itself: it is the reference and registers to nobody
+  // Robots that may stand in between where this one's map has nothing in common with the reference robot's,
+  // and whose maps merged_map holds, too.
+  std::vector<std::string> other_robots;
   FrameNames frames;
   std::string reference_map_frame;  // empty: <reference robot>/map
   double period_s = 1.0;            // between attempts; maps change little in less
