@@ -126,16 +126,22 @@ void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, cons
                    new_share * look.cause / (sigma_m * sigma_m)});
 }
 
+// What confirms the cell counts by how new the look is. A look that tips the cell without being wholly new
+// only leaves it contested, one step on the new side; the next look decides in full: a thing that came is
+// there after two looks of a robot that stands, and one that went does not linger between.
 EvidenceCell ScanWedge::updated(EvidenceCell cell, double change, double new_share) const {
   const GridParams& params = grid_.params();
   const double before = EvidenceScale::logOddsOf(cell);
-  const bool confirms = change * before >= 0;
+  const bool contested = cell == 1 || cell == -1;
+  const bool confirms = change * before >= 0 && !contested;
   const double step =
       std::clamp(change, -params.free_step, params.occupied_step) * (confirms ? new_share : 1);
   const EvidenceCell after =
       EvidenceScale::cellOf(std::clamp(before + step, params.min_log_odds, params.max_log_odds));
+  const bool tips = cell != 0 && !contested && (cell > 0) != (after > 0);
   // 0 is kept for "never seen": evidence that cancels stays one step on the side of the last look.
-  if (after == 0 && cell != 0) return static_cast<EvidenceCell>(change > 0 ? -1 : 1);
+  if ((after == 0 && cell != 0) || (tips && new_share < 1))
+    return static_cast<EvidenceCell>(change > 0 ? -1 : 1);
   return after;
 }
 

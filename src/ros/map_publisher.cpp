@@ -53,8 +53,10 @@ void GridPublisher::publish(const GridState& state) {
 // wherever it was.
 void GridPublisher::announceEmpty(const GridState& state) {
   if (published_epoch_ == 0 || published_epoch_ == state.epoch) return;
-  const cv::Mat1f unseen(published_geometry_.rows, published_geometry_.cols, kUnseen);
-  map_.publish(toOccupancyGrid({published_geometry_, unseen}, state.header));
+  if (published_geometry_.cols > 0) {
+    const cv::Mat1f unseen(published_geometry_.rows, published_geometry_.cols, kUnseen);
+    map_.publish(toOccupancyGrid({published_geometry_, unseen}, state.header));
+  }
   published_epoch_ = state.epoch;
   published_version_ = 0;
   published_geometry_ = GridGeometry{};
