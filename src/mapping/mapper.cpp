@@ -107,27 +107,19 @@ void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
   }
 }
 
+// What the thread beside has done is taken up after a fixed count of scans, so that the same scans always
+// make the same map. It needs some milliseconds a frame in all, and is waited for where it is slower.
 void Mapper::straighten() {
   if (redraw_) {
     redraw();
+  } else if (beside_.valid()) {
+    if (--scans_to_take_up_ <= 0) redraw_ = beside_.get();
   } else if (graph_.solveDue()) {
-    std::optional<GraphSolution> solution = graph_.solve();
-    if (solution && movesTheMap(*solution))
-      redraw_.emplace(LocalMap(params_.grid, current().levelCount()), std::move(*solution));
+    constexpr int kLeastScans = 5, kFramesPerScan = 30;
+    scans_to_take_up_ = kLeastScans + static_cast<int>(graph_.frames().size()) / kFramesPerScan;
+    beside_ = startRedraw(graph_, LocalMap(params_.grid, current().levelCount()),
+                          {params_.graph.redraw_shift_m, params_.graph.match_distance_m});
   }
-}
-
-bool Mapper::movesTheMap(const GraphSolution& solution) const {
-  const double limit_m = params_.graph.redraw_shift_m;
-  const ScanCalibration &before = graph_.calibration(), &now = solution.calibration;
-  const Eigen::Vector2d change(now.offset_per_m - before.offset_per_m, now.slope_per_m - before.slope_per_m);
-  const double far_m = params_.graph.match_distance_m;
-  if (change.norm() * far_m * far_m > limit_m) return true;
-  for (std::size_t i = 0; i < solution.map_from_base.size(); ++i) {
-    const Pose2 moved = graph_.frames()[i].map_from_base.inverse() * solution.map_from_base[i];
-    if (moved.translation().norm() + far_m * std::abs(moved.yaw_rad) > limit_m) return true;
-  }
-  return false;
 }
 
 void Mapper::redraw() {
@@ -148,6 +140,7 @@ void Mapper::reset() {
   filter_ = OdometryFilter(params_.odometry);
   graph_ = FrameGraph(params_.graph, params_.odometry);
   redraw_.reset();
+  beside_ = {};
   redraws_ = 0;
   loaded_ = false;
   map_from_odom_ = {};

@@ -11,6 +11,7 @@
 // not move.
 #pragma once
 
+#include <future>
 #include <optional>
 
 #include "cornerstone/mapping/local_map.h"
@@ -67,7 +68,6 @@ class Mapper {
   void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
   void straighten();                                                  // the map, by what the graph knows
   void redraw();
-  bool movesTheMap(const GraphSolution& solution) const;
   LookMotion motion() const;  // since the last look that was inserted
   double newShare(const RangeScan& scan) const;
 
@@ -78,7 +78,9 @@ class Mapper {
   Pose2 map_from_odom_;
   OdometryFilter filter_;
   FrameGraph graph_;
-  std::optional<MapRedraw> redraw_;  // under way
+  std::future<std::optional<MapRedraw>> beside_;  // solves and draws in a thread of its own
+  int scans_to_take_up_ = 0;
+  std::optional<MapRedraw> redraw_;  // its last looks
   int redraws_ = 0;
   bool loaded_ = false;
   std::optional<Pose2> last_odom_;      // odom_from_base of the last scan
