@@ -9,6 +9,7 @@ int main() {
   try {
     cornerstone::bench::stereoPart();
     cornerstone::bench::mappingPart();
+    cornerstone::bench::mappingSizePart();
     cornerstone::bench::registrationPart();
     cornerstone::bench::registrationLimitsPart();
   } catch (const std::exception& error) {

@@ -157,16 +157,7 @@ OccupancyGrid::Tile& OccupancyGrid::tileFor(TileIndex index) {
   if (found != tiles_.end()) return found->second;
   low_ = tiles_.empty() ? index : TileIndex{std::min(low_.col, index.col), std::min(low_.row, index.row)};
   high_ = tiles_.empty() ? index : TileIndex{std::max(high_.col, index.col), std::max(high_.row, index.row)};
-  Tile& tile = tiles_[index];
-  const GridGeometry at = geometryOf(index, index);
-  const double size_m = kTileCells * at.resolution_m;
-  tile.cells.setSize(static_cast<float>(at.origin_x_m), static_cast<float>(at.origin_x_m + size_m),
-                     static_cast<float>(at.origin_y_m), static_cast<float>(at.origin_y_m + size_m),
-                     static_cast<float>(at.resolution_m));
-  if (tile.cells.getSizeX() != kTileCells || tile.cells.getSizeY() != kTileCells)
-    throw std::logic_error("OccupancyGrid: MRPT made a tile of another size");
-  for (int row = 0; row < kTileCells; ++row) std::fill_n(tile.cells.getRow(row), kTileCells, EvidenceCell{0});
-  return tile;
+  return tiles_[index];
 }
 
 GridGeometry OccupancyGrid::geometry() const {
@@ -190,7 +181,7 @@ GridMap OccupancyGrid::tiles(TileIndex low, TileIndex high) const {
     for (auto found = tiles_.lower_bound({low.col, tile_row}); found != end; ++found) {
       const Cell at = firstCellOf(found->first);
       for (int row = 0; row < kTileCells; ++row) {
-        const EvidenceCell* cells = found->second.cells.getRow(row);
+        const EvidenceCell* cells = found->second.at({0, row});
         float* out = map.occupied.ptr<float>(at.row - first.row + row) + (at.col - first.col);
         for (int col = 0; col < kTileCells; ++col) out[col] = scale_.published(cells[col]);
       }
@@ -219,8 +210,7 @@ CellWindow OccupancyGrid::readWindow(const Eigen::Vector2d& low_m, const Eigen::
       EvidenceCell{0});
   forEachRowPart(window, [&](TileIndex index, Cell inside, Cell at, int count) {
     const auto found = tiles_.find(index);
-    if (found != tiles_.end())
-      std::copy_n(found->second.cells.getRow(inside.row) + inside.col, count, &window.at(at));
+    if (found != tiles_.end()) std::copy_n(found->second.at(inside), count, &window.at(at));
   });
   return window;
 }
@@ -232,7 +222,7 @@ void OccupancyGrid::writeWindow(const CellWindow& window) {
     const bool known = found != tiles_.end();
     if (!known && std::all_of(cells, cells + count, [](EvidenceCell cell) { return cell == 0; })) return;
     Tile& tile = known ? found->second : tileFor(index);
-    EvidenceCell* old_cells = tile.cells.getRow(inside.row) + inside.col;
+    EvidenceCell* old_cells = tile.at(inside);
     if (std::equal(cells, cells + count, old_cells)) return;
     std::copy_n(cells, count, old_cells);
     tile.version = version_;
@@ -249,7 +239,7 @@ void OccupancyGrid::addHit(const SurfaceHit& hit) {
   SurfacePoint& point = tile.surface[static_cast<std::size_t>((hit.cell.row - first.row) * kTileCells +
                                                               hit.cell.col - first.col)];
   // What is being cleared is forgotten, so that a thing put there later has its own place.
-  if (EvidenceScale::logOddsOf(tile.cells.getRow(hit.cell.row - first.row)[hit.cell.col - first.col]) < 0)
+  if (EvidenceScale::logOddsOf(*tile.at({hit.cell.col - first.col, hit.cell.row - first.row})) < 0)
     point.weight = 0;
   const double gain = hit.weight / (hit.weight + static_cast<double>(point.weight));
   point.x_m += static_cast<float>(gain * (hit.point_m.x() - static_cast<double>(point.x_m)));

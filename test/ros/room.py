@@ -50,14 +50,14 @@ class Room:
         rays = numpy.stack([numpy.cos(laser.yaw + bearings), numpy.sin(laser.yaw + bearings), 0 * bearings], 1)
         return self.cast((laser.x, laser.y, 0.3), rays)
 
-    def depth_image(self, pose, pitch=0.0):
-        """Z in m of a camera CAMERA_HEIGHT_M above the base's origin of a robot that pitches down by so much."""
+    def depth_image(self, pose, pitch=0.0, height=CAMERA_HEIGHT_M):
+        """Z in m of a camera so high above the base's origin of a robot that pitches down by so much."""
         c, s, cp, sp = math.cos(pose.yaw), math.sin(pose.yaw), math.cos(pitch), math.sin(pitch)
         world_from_base = numpy.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ numpy.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
         v, u = numpy.mgrid[0:HEIGHT, 0:WIDTH]
         in_camera = numpy.stack([(u - (WIDTH - 1) / 2) / FOCAL_PX, (v - (HEIGHT - 1) / 2) / FOCAL_PX, numpy.ones(u.shape)], -1)
         rays = in_camera.reshape(-1, 3) @ (world_from_base @ BASE_FROM_CAMERA).T
-        origin = numpy.array([pose.x, pose.y, 0]) + world_from_base @ numpy.array([0, 0, CAMERA_HEIGHT_M])
+        origin = numpy.array([pose.x, pose.y, 0]) + world_from_base @ numpy.array([0, 0, height])
         return self.cast(origin, rays).reshape(HEIGHT, WIDTH)
 
     def distance(self, x, y, walls=None):
