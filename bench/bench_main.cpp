@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
     if (!folders.empty()) cornerstone::bench::stereoSetsPart(folders);
     if (stereo_only) return 0;
     cornerstone::bench::mappingPart();
+    cornerstone::bench::mappingSizePart();
     cornerstone::bench::registrationPart();
     cornerstone::bench::registrationLimitsPart();
   } catch (const std::exception& error) {

@@ -77,7 +77,7 @@ void rangePart() {
       "an obstacle within 4 m taken for something farther by as much; silent: no answer; of 1,000 columns "
       "with one. Error: median of |range - truth| in mm, by the true distance. cornerstone: its scan; the "
       "peers: the nearest pixel of the column, the rule of depthimage_to_laserscan.\n",
-      ScanParams().z_min_m, ScanParams().z_max_m);
+      ScanParams().levels.front().z_min_m, ScanParams().levels.front().z_max_m);
   constexpr int kViews = 24, kSeeds = 3;
   std::vector<Tour> office, other, striped;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)

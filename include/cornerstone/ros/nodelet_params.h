@@ -41,6 +41,13 @@ struct OccupancyMapperParams {  // config/mapper.yaml
   double publish_period_s =
       0.5;                    // of the map and its tiles; at most 2 Hz keeps the picture fresh at little cost
   double tf_period_s = 0.05;  // of map -> odom
+  // Pitch and roll of the robot from its odometry (an IMU's, as a rule); false where they are noise, and on
+  // ramps that the robot shall not take for walls.
+  bool use_tilt = true;
+  // A saved map to go on in, and where the robot stands in it at the start; empty: an empty map, whose frame
+  // is odom at the first scan. A reset begins there again.
+  std::string load_map;
+  Pose2 start;
   ScanParams scan;
   DepthNoise depth;
   LaserParams laser;
