@@ -142,6 +142,11 @@ class Diagnostics:
         with self.lock:
             return dict(self.newest.get(node, {}))
 
+    def forget(self, node):
+        """A node of the same name is about to start."""
+        with self.lock:
+            self.newest.pop(node, None)
+
     def complaints_of(self, node):
         with self.lock:
             return set(self.complaints.get(node, ()))
