@@ -5,7 +5,8 @@ import unittest
 import numpy
 import rospy
 from map_msgs.msg import OccupancyGridUpdate
-from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import OccupancyGrid, Odometry
+from tf2_msgs.msg import TFMessage
 
 import chain
 from chain import Pose2
@@ -21,7 +22,8 @@ class Levels(unittest.TestCase):
         rospy.init_node("levels_test")
         bag, rate = rospy.myargv()[1:3]
         cls.diagnostics = chain.Diagnostics()
-        topics = {"/a/map_tiles/ceiling": MapTiles}
+        # What the player waits for, too: all that robot a's bag has for this node.
+        topics = {"/a/map_tiles/ceiling": MapTiles, "/tf": TFMessage, "/a/ground_truth": Odometry}
         for name in ("map", "map/obstacles", "map/ceiling"):
             topics.update({f"/a/{name}": OccupancyGrid, f"/a/{name}_updates": OccupancyGridUpdate})
         cls.recorder = chain.Recorder(topics)
