@@ -43,6 +43,9 @@ class StageCase(unittest.TestCase):
         load_parameters(config, self.stage, **changes)
         self.node = Node(f"{self.programs}/{name}_node", "__ns:=/a")
         self.addCleanup(self.node.stop)
+        if name == "occupancy_mapper":  # it reads ranges when the pose of their instant is known, and here time does not wait
+            chain.wait_until(lambda: self.stage in chain.connected(rospy.get_name(), "/tf"), "the mapper to take tf", 20)
+            rospy.sleep(0.2)
 
     def publisher(self, topic, kind):
         publisher = rospy.Publisher(topic, kind, queue_size=50, latch=True)
