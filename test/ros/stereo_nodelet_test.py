@@ -172,10 +172,11 @@ class StereoNodelet(StageCase):
 
     def test_images_before_their_calibrations(self):
         self.start_stereo(calibrations=None)
-        self.send(image(), image())
-        self.send(image(), image())
+        sets = 10  # twice queue_size, in less than the 2 s that sets wait
+        for _ in range(sets):
+            self.send(image(), image())
         self.calibrate(info(), info(shift=SHIFT))
-        chain.wait_until(lambda: self.diagnostics.count(self.stage, "processed") == 2, "both sets that waited", 10)
+        chain.wait_until(lambda: self.diagnostics.count(self.stage, "processed") == sets, "every set that waited", 10)
         self.assertEqual(self.dropped(), 0, self.diagnostics.of(self.stage))
         self.assert_lives()
 
