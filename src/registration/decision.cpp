@@ -19,12 +19,19 @@ constexpr double kPrior = 2.0;
 // Walls come in pieces that agree or do not as a whole: so many metres are one piece of evidence.
 constexpr double kPiece_m = 0.3;
 constexpr double kNoise_m2 = 1.0;  // variance of a score without any wall
-// Contradicting share of a rival's edges below which it stands in its own right: noise alone makes so much.
+// What contradicts a rival, to what agrees with it, below which it stands in its own right: noise alone makes
+// so much. So does a rival that is contradicted hardly more than the best pose is: what excuses the one
+// excuses the other.
 constexpr double kClear = 0.05;
+constexpr double kHardlyMore = 1.3;
 constexpr double kTie = 0.95;       // of the values: not told apart once neighbourhoods may give way
 constexpr double kSmallLead = 2.5;  // below it a rival is the reason rather than the contradictions
 
 double valueOf(const PoseScore& score) { return score.agree - score.contradict; }
+
+bool standsAlone(const PoseScore& rival, const PoseScore& best) {
+  return rival.contradict < rival.agree * std::max(kClear, kHardlyMore * best.contradict / best.agree);
+}
 
 // Like the difference of two counts: its variance is their sum.
 double leadSigmas(const PoseScore& best, const PoseScore& rival, double square_m) {
@@ -68,7 +75,7 @@ PoseEvidence weighPoses(const std::vector<JudgedPose>& poses, double square_m) {
     const PoseScore& rival = poses[i].elastic;
     const double share = valueOf(rival) / valueOf(best.elastic);
     evidence.second_best = std::max(evidence.second_best, share);
-    if (rival.contradict < kClear * rival.agree) evidence.clear_rival = std::max(evidence.clear_rival, share);
+    if (standsAlone(rival, best.elastic)) evidence.clear_rival = std::max(evidence.clear_rival, share);
   }
   return evidence;
 }
@@ -94,7 +101,7 @@ std::optional<std::string> reasonToRefuse(const PoseEvidence& evidence, const Re
     return "another pose fits as well where the maps may bend: " + text(evidence.second_best, 2) +
            " of the best one's value";
   if (evidence.clear_rival > params.max_clear_rival)
-    return "a different pose is free of contradictions, too: " + text(evidence.clear_rival, 2) +
+    return "a different pose is contradicted as little: " + text(evidence.clear_rival, 2) +
            " of the best one's value";
   if (evidence.spread < params.min_spread)
     return "the walls leave one direction open: it holds " + text(evidence.spread, 3) + " of the other one";

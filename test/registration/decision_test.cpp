@@ -55,6 +55,13 @@ TEST(Decision, ARivalFreeOfContradictionsIsRefused) {
   EXPECT_FALSE(isBelieved({posed(60, 1), posed(26, 0)}));
 }
 
+// Two wings of a building: the wrong one shares more of the maps, and both are contradicted somewhat.
+TEST(Decision, ARivalContradictedAsLittleIsRefused) {
+  EXPECT_TRUE(isBelieved({posed(150, 13), posed(60, 12)}));
+  EXPECT_FALSE(isBelieved({posed(150, 13), posed(60, 5)}));
+  EXPECT_TRUE(isBelieved({posed(150, 13), posed(40, 3)}));
+}
+
 TEST(Decision, TooLittleWallAnOpenDirectionOrNothingIsRefused) {
   EXPECT_FALSE(isBelieved({posed(18, 0)}));
   PoseEvidence small = evidenceFor({posed(25, 0)});

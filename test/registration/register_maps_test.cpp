@@ -142,7 +142,7 @@ TEST(RegisterMaps, RefusesRepeatedIdenticalOffices) {
 TEST(RegisterMaps, RefusesOnOneCornerOnly) {
   DrawnWorld world;
   world.rooms = {{0, 0, 20, 20}};
-  const Box corner{-1, -1, 2.5, 2.5};
+  const DrawnBox corner{-1, -1, 2.5, 2.5};
   EXPECT_FALSE(align(draw(world, {Pose2{0, 0, 0.1}, corner}), draw(world, {Pose2{1, 0, 0.9}, corner}))
                    .registration.has_value());
 }

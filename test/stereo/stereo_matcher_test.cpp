@@ -90,7 +90,7 @@ TEST(StereoMatcher, ThingBeforeABareWallEndsAtItsOutline) {
       near.top(thing + cv::Point(0, 13)).copyTo(images.top(thing + cv::Point(0, 13)));
     }
     const Disparity disparity = matched(images);
-    cv::Mat1b answered = disparity.rejection == 0;
+    cv::Mat1b answered(disparity.rejection == 0);
     EXPECT_GT(cv::countNonZero(answered(thing)), 0.95 * thing.area());
     const cv::Rect with_blur(58, 38, 44, 44);
     answered(with_blur).setTo(0);

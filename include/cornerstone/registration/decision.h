@@ -29,7 +29,7 @@ struct PoseEvidence {
   double smaller_map_m = 0;  // length of wall of the map with less
   double lead_sigmas = 0;    // of the rigid pose over the best different one, or over none at all
   double second_best = 0;    // value (agreeing less contradicting) of the best different pose over this one's
-  double clear_rival = 0;    // the same of the best different pose that next to nothing contradicts
+  double clear_rival = 0;    // the same of the best different pose that is contradicted as little
   double spread = 0;         // weakest over strongest direction of the refinement's information
   bool with_prior = false;   // only poses near a prior were looked at
 };

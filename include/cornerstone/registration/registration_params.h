@@ -35,10 +35,11 @@ struct RegistrationParams {
   double refine_reach_m = 0.3;
   // Standard deviation of the weight of the edges around a focus: what a robot sees at once.
   double focus_radius_m = 4.0;
-  // Value of a different pose that next to nothing contradicts over the winner's, above which neither is
-  // believed: like offices in a row differ in how much of them the maps share, and in nothing else. A few
-  // walls stand free of contradictions anywhere.
-  double max_clear_rival = 0.4;
+  // Value of a different pose that is contradicted as little as the winner (or next to nothing) over the
+  // winner's, above which neither is believed: like offices in a row, or the two wings of a building, differ
+  // in how much of them the maps share, and in nothing else. A few walls stand free of contradictions
+  // anywhere.
+  double max_clear_rival = 0.35;
   // Length of wall that must agree: walls of different buildings agree over 30 m by coincidence where one of
   // the maps is large. Of small maps this share is enough, but never less than a few rooms.
   double min_agreeing_m = 30.0;
