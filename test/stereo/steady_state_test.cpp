@@ -46,6 +46,7 @@ namespace {
 
 TEST(StereoMatcher, AllocatesNothingInTheSteadyState) {
   static CountingAllocator counting;
+  cv::MatAllocator* usual = cv::Mat::getDefaultAllocator();
   cv::Mat::setDefaultAllocator(&counting);
   cv::RNG random(17);
   const Texture texture({160, 120}, 1, 30, random);
@@ -63,7 +64,7 @@ TEST(StereoMatcher, AllocatesNothingInTheSteadyState) {
     matcher.match(images, rigOf(images), disparity);
     EXPECT_EQ(allocations - before, 0) << (third ? "three cameras, 640x480" : "two cameras, 160x120");
   }
-  cv::Mat::setDefaultAllocator(nullptr);
+  cv::Mat::setDefaultAllocator(usual);
 }
 
 }  // namespace
