@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <opencv2/imgproc.hpp>
+
+#include "cornerstone/stereo/fill.h"
 
 namespace cornerstone {
 namespace {
@@ -14,13 +15,16 @@ constexpr double kSearchScale = static_cast<double>(kSearchChance) / kChanceCost
 // Penalties in the costs of the search, see kSearchChance. A slope of one disparity a pixel is rare on
 // walls, a depth step costs as much as one pixel without any match.
 constexpr int kSlopePenalty = 40, kJumpPenalty = 66;
-// Brightness step at which the penalty of a depth step is halved, far above noise.
-constexpr double kHalvingStep_grey = 20;
+// A depth step costs so much less for each grey level of a brightness step, down to a slope's penalty.
+constexpr int kPenaltyPerGrey = 3;
 
-// The row or column that a border one mirrors: -1 -> 0, count -> count - 1.
-int mirrored(int at, int count) {
-  while (at < 0 || at >= count) at = at < 0 ? -1 - at : 2 * count - 1 - at;
-  return at;
+void jumpPenaltiesAt(const std::uint8_t* here, const std::uint8_t* before, int count,
+                     std::uint8_t* penalties) {
+  for (int x = 0; x < count; ++x) {
+    const int step_grey = std::abs(here[x] - before[x]);
+    penalties[x] =
+        static_cast<std::uint8_t>(std::max(kJumpPenalty - kPenaltyPerGrey * step_grey, kSlopePenalty));
+  }
 }
 
 }  // namespace
@@ -46,21 +50,18 @@ void CostSweep::prepare(SweepInput& input) {
   }
   pair_costs_.create(window + 1, row_costs);
   zeros_.create(1, row_costs);
-  zeros_.setTo(0);
+  fillAll<std::uint8_t>(zeros_, 0);
   column_sums_.create(1, row_costs);
   sums_.create(1, row_costs);
   costs_.create(1, row_costs);
   for (cv::Mat1b* paths : {&from_left_, &from_right_, &from_above_}) paths->create(1, path_costs);
   // Nothing above the first row: all zero, between 255s.
-  from_above_.setTo(0);
+  fillAll<std::uint8_t>(from_above_, 0);
   for (int x = 0; x < width; ++x)
     from_above_(0, x * (disparities_ + 2)) = from_above_(0, (x + 1) * (disparities_ + 2) - 1) = 255;
   lowest_above_.create(1, width);
-  lowest_above_.setTo(0);
+  fillAll<std::uint8_t>(lowest_above_, 0);
   path_sums_.create(1, disparities_ + kSlack);
-  for (std::size_t step = 0; step < jump_penalty_.size(); ++step)
-    jump_penalty_[step] = static_cast<std::uint8_t>(
-        std::max<double>(kSlopePenalty, kJumpPenalty / (1 + static_cast<double>(step) / kHalvingStep_grey)));
   jump_ahead_.resize(static_cast<std::size_t>(width));
   jump_down_.resize(static_cast<std::size_t>(width));
   path_winners_.resize(static_cast<std::size_t>(width));
@@ -115,7 +116,7 @@ void CostSweep::planeCosts(int disparity_px) {
   for (std::size_t v = 0; v < 2; ++v) {
     const SecondaryView& view = input_->views[v < input_->view_count ? v : 0];
     camera_planes_[v].create(size_px_);
-    camera_planes_[v].setTo(kUnseen);
+    fillAll(camera_planes_[v], kUnseen);
     input_->reference->costs(view.features(), view.offsetAt(disparity_px), camera_planes_[v]);
   }
   for (int row = 0; row < size_px_.height; ++row) {
@@ -131,13 +132,14 @@ void CostSweep::planeCosts(int disparity_px) {
 // Window costs of the disparities just outside the search: of the farthest, which all cameras see, and of the
 // nearest. Most pixels have neither, so that they also tell what unrelated pixels cost in a place.
 void CostSweep::endCosts() {
-  const cv::Size window(input_->window_px, input_->window_px);
   plane_.create(size_px_);
   planeCosts(0);
   plane_.copyTo(unseen_costs_);
-  cv::boxFilter(plane_, farthest_, CV_16S, window, {-1, -1}, false, cv::BORDER_REFLECT);
+  box_sums_.compute(plane_, input_->window_px, farthest_);
   planeCosts(disparities_ + 1);
-  cv::boxFilter(plane_, nearest_, CV_16S, window, {-1, -1}, false, cv::BORDER_REFLECT);
+  box_sums_.compute(plane_, input_->window_px, nearest_);
+  const cv::Mat& farthest = farthest_;
+  cv::max(farthest, nearest_, winners_.chance_cost);
 }
 
 std::uint8_t* CostSweep::pairCostsOf(int row) { return pair_costs_[row % pair_costs_.rows]; }
@@ -165,7 +167,7 @@ void CostSweep::windowSums(int row) {
                     pairCostsOf(mirrored(row - 1 - radius, rows)), count);
     return;
   }
-  column_sums_.setTo(0);
+  fillAll<std::uint16_t>(column_sums_, 0);
   for (int i = -radius; i <= radius; ++i)
     kernels_->slide(column_sums_[0], pairCostsOf(mirrored(i, rows)), zeros_[0], count);
 }
@@ -173,11 +175,9 @@ void CostSweep::windowSums(int row) {
 void CostSweep::jumpPenalties(int row) {
   const std::uint8_t *here = (*input_->reference_image)[row],
                      *above = (*input_->reference_image)[std::max(row - 1, 0)];
-  for (int x = 0; x < size_px_.width; ++x) {
-    const auto at = static_cast<std::size_t>(x);
-    jump_ahead_[at] = jump_penalty_[static_cast<std::size_t>(std::abs(here[x] - here[std::max(x - 1, 0)]))];
-    jump_down_[at] = jump_penalty_[static_cast<std::size_t>(std::abs(here[x] - above[x]))];
-  }
+  jump_ahead_[0] = kJumpPenalty;
+  jumpPenaltiesAt(here + 1, here, size_px_.width - 1, jump_ahead_.data() + 1);
+  jumpPenaltiesAt(here, above, size_px_.width, jump_down_.data());
 }
 
 void CostSweep::keep(int row) {
@@ -186,8 +186,7 @@ void CostSweep::keep(int row) {
   const short *seen_by_one = input_->views[0].seenOf(row),
               *seen_by_other = input_->views[input_->view_count - 1].seenOf(row);
   short *disparities_px = winners_.disparity_px[row], *costs = winners_.cost[row];
-  short *before = winners_.cost_before[row], *after = winners_.cost_after[row],
-        *chance = winners_.chance_cost[row];
+  short *before = winners_.cost_before[row], *after = winners_.cost_after[row];
   std::uint8_t *own_costs = winners_.own_cost[row], *margins = winners_.margin[row],
                *leads = winners_.lead[row];
   const short *nearest = nearest_[row], *farthest = farthest_[row];
@@ -199,7 +198,6 @@ void CostSweep::keep(int row) {
     costs[x] = seen ? static_cast<short>(sums[i]) : Winners::kNoCost;
     before[x] = i > 0 ? static_cast<short>(sums[i - 1]) : farthest[x];
     after[x] = i + 1 < disparities_ ? static_cast<short>(sums[i + 1]) : nearest[x];
-    chance[x] = std::max(farthest[x], nearest[x]);
     own_costs[x] = own[i];
     margins[x] = winner.margin;
     leads[x] = winner.lead;

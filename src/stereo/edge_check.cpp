@@ -56,17 +56,10 @@ void EdgeCheck::check(const Winners& winners, const SweepInput& input, double sm
   rejection.copyTo(before_);
   const int reach_px = input.window_px / 2 + 1;
   for (int y = 0; y < rejection.rows; ++y) {
-    const short* here = winners.disparity_px[y];
-    const short* above = winners.disparity_px[std::max(y - reach_px, 0)];
-    const short* below = winners.disparity_px[std::min(y + reach_px, rejection.rows - 1)];
-    for (int x = 0; x < rejection.cols; ++x) {
-      if (before_(y, x) != 0) continue;
-      const auto steps = [own = here[x]](short other) { return std::abs(other - own) > kStep_px; };
-      const bool beside_edge = steps(above[x]) || steps(below[x]) || steps(here[std::max(x - reach_px, 0)]) ||
-                               steps(here[std::min(x + reach_px, rejection.cols - 1)]);
-      if (beside_edge && !standsOut(winners, input, {x, y}, smallest_cost_ratio))
+    const std::uint8_t *beside_edge = steps_.of(winners.disparity_px, y, reach_px), *before = before_[y];
+    for (int x = 0; x < rejection.cols; ++x)
+      if (beside_edge[x] != 0 && before[x] == 0 && !standsOut(winners, input, {x, y}, smallest_cost_ratio))
         rejection(y, x) = static_cast<std::uint8_t>(Rejection::kUniqueness);
-    }
   }
 }
 

@@ -1,9 +1,10 @@
 #include "cornerstone/stereo/gradient_features.h"
 
-#include <cmath>
 #include <cstdlib>
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "cornerstone/stereo/sweep_kernels.h"
 
 namespace cornerstone {
 namespace {
@@ -11,48 +12,46 @@ namespace {
 constexpr int kReach_px = 2;
 // Noise of a difference in grey levels: good cameras have 1 to 2 a pixel, small ones in poor light 4;
 // smoothing halves it. Half and double of both change the share of wrong answers on noisy images by a tenth.
-constexpr double kNoise_grey = 4, kSmoothNoise_grey = 2;
+constexpr float kNoise_grey = 4, kSmoothNoise_grey = 2;
+constexpr int kVector_px = 64;
 
-class Squash {
- public:
-  explicit Squash(double noise_grey) {
-    for (int g = -255; g <= 255; ++g)
-      features_[static_cast<std::size_t>(g + 255)] = static_cast<std::uint8_t>(
-          std::lround(GradientFeatures::kLargest / 2.0 * (1 + g / (std::abs(g) + noise_grey))));
+// The image itself in a plane with a border for differences and smoothing, and room for whole vectors.
+cv::Mat1b within(cv::Mat1b& plane, cv::Size size, int border_px) {
+  const cv::Size wanted(size.width + 2 * border_px + kVector_px, size.height + 2 * border_px);
+  if (plane.size() != wanted) {
+    plane.create(wanted);
+    plane.setTo(0);
   }
-  std::uint8_t operator()(int ahead, int behind) const {
-    return features_[static_cast<std::size_t>(ahead - behind + 255)];
-  }
+  return plane(cv::Rect({border_px, border_px}, size));
+}
 
- private:
-  std::array<std::uint8_t, 511> features_{};
-};
-
-// Right and down differences of an image with a border of kReach_px, at `reach_px`.
-void squashDifferences(const cv::Mat1b& padded, int reach_px, const Squash& squash, cv::Mat1b* channels) {
-  for (int y = 0; y < channels[0].rows; ++y) {
-    const std::uint8_t* middle = padded[y + kReach_px] + kReach_px;
-    const std::uint8_t *above = padded[y + kReach_px - reach_px] + kReach_px,
-                       *below = padded[y + kReach_px + reach_px] + kReach_px;
-    std::uint8_t *right = channels[0][y], *down = channels[1][y];
-    for (int x = 0; x < channels[0].cols; ++x) {
-      right[x] = squash(middle[x + reach_px], middle[x - reach_px]);
-      down[x] = squash(below[x], above[x]);
-    }
+// Right and down differences at `reach_px` of an image within a border.
+void squashDifferences(const cv::Mat1b& image, int reach_px, float noise_grey, cv::Mat1b* channels) {
+  const SweepKernels& kernels = sweepKernels();
+  const std::ptrdiff_t down = reach_px * static_cast<std::ptrdiff_t>(image.step);
+  for (int y = 0; y < image.rows; ++y) {
+    const std::uint8_t* middle = image[y];
+    kernels.squash({middle + reach_px, middle - reach_px, noise_grey, image.cols}, channels[0][y]);
+    kernels.squash({middle + down, middle - down, noise_grey, image.cols}, channels[1][y]);
   }
 }
 
 }  // namespace
 
 void GradientFeatures::compute(const cv::Mat1b& image) {
-  static const Squash squash(kNoise_grey), squash_smooth(kSmoothNoise_grey);
-  cv::GaussianBlur(image, smooth_, {3, 3}, 0, 0, cv::BORDER_REFLECT_101);  // weights 1 2 1
-  cv::copyMakeBorder(image, padded_, kReach_px, kReach_px, kReach_px, kReach_px, cv::BORDER_REFLECT_101);
-  cv::copyMakeBorder(smooth_, padded_smooth_, kReach_px, kReach_px, kReach_px, kReach_px,
+  constexpr int kSmoothBorder_px = kReach_px, kBorder_px = kReach_px + 1;  // smoothing takes one
+  const cv::Mat1b framed = within(padded_, image.size(), kBorder_px);
+  smooth_ = within(padded_smooth_, image.size(), kSmoothBorder_px);
+  cv::Mat1b with_border = padded_.colRange(0, image.cols + 2 * kBorder_px);
+  cv::copyMakeBorder(image, with_border, kBorder_px, kBorder_px, kBorder_px, kBorder_px,
                      cv::BORDER_REFLECT_101);
-  for (cv::Mat1b& channel : channels_) channel.create(image.size());
-  squashDifferences(padded_, 1, squash, &channels_[0]);
-  squashDifferences(padded_smooth_, 2, squash_smooth, &channels_[2]);
+  for (int y = 0; y < image.rows + 2 * kSmoothBorder_px; ++y) {
+    const std::uint8_t* rows[] = {padded_[y] + 1, padded_[y + 1] + 1, padded_[y + 2] + 1};
+    sweepKernels().smooth(rows, image.cols + 2 * kSmoothBorder_px, padded_smooth_[y]);
+  }
+  for (std::size_t c = 0; c < kChannels; ++c) channels_[c] = within(planes_[c], image.size(), 0);
+  squashDifferences(framed, 1, kNoise_grey, &channels_[0]);
+  squashDifferences(smooth_, 2, kSmoothNoise_grey, &channels_[2]);
   together_.create(image.rows + 1, image.cols);
   cv::Mat4b pixels = together_.rowRange(0, image.rows);
   cv::merge(channels_.data(), kChannels, pixels);

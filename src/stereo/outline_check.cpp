@@ -74,14 +74,28 @@ void OutlineCheck::checkSide(const Winners& winners, const cv::Mat1b& grey, cv::
   }
 }
 
+// Marks answered pixels beside a step or a pixel without an answer.
+const std::uint8_t* OutlineCheck::endsOf(const Winners& winners, int y) {
+  const std::uint8_t *here = before_[y], *above = before_[y - 1], *below = before_[y + 1];
+  const std::uint8_t* steps = steps_.of(winners.disparity_px, y, 1);
+  ends_.resize(static_cast<std::size_t>(before_.cols));
+  std::uint8_t* ends = ends_.data();
+  for (int x = 1; x < before_.cols - 1; ++x) {
+    const int beside = here[x - 1] | here[x + 1] | above[x] | below[x] | steps[x];
+    ends[x] = static_cast<std::uint8_t>(static_cast<int>(beside != 0) & static_cast<int>(here[x] == 0));
+  }
+  return ends;
+}
+
 void OutlineCheck::check(const Winners& winners, const SweepInput& input, cv::Mat1b& rejection) {
   window_radius_px_ = input.window_px / 2;
   const int margin = window_radius_px_ + kFeatureReach_px + kEdgeWidth_px;
   rejection.copyTo(before_);
   outlying_.clear();
-  for (int y = margin; y < rejection.rows - margin; ++y)
+  for (int y = margin; y < rejection.rows - margin; ++y) {
+    const std::uint8_t* ends = endsOf(winners, y);
     for (int x = margin; x < rejection.cols - margin; ++x) {
-      if (before_(y, x) != 0) continue;
+      if (ends[x] == 0) continue;
       const int own_px = winners.disparity_px(y, x);
       for (const cv::Point outward : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
         const cv::Point next = cv::Point(x, y) + outward;
@@ -89,6 +103,7 @@ void OutlineCheck::check(const Winners& winners, const SweepInput& input, cv::Ma
         checkSide(winners, input.reference->smooth(), {x, y}, outward);
       }
     }
+  }
   for (const cv::Point at : outlying_)
     if (rejection(at) == 0) rejection(at) = static_cast<std::uint8_t>(Rejection::kUniqueness);
 }

@@ -45,6 +45,18 @@ void reject(Disparity& disparity, int y, int x, Rejection why) {
   disparity.rejection(y, x) = static_cast<std::uint8_t>(why);
 }
 
+void clearRejected(Disparity& disparity) {
+  for (int y = 0; y < disparity.rejection.rows; ++y) {
+    const std::uint8_t* rejections = disparity.rejection[y];
+    float *disparities_px = disparity.disparity_px[y], *sigmas_px = disparity.sigma_px[y];
+    for (int x = 0; x < disparity.rejection.cols; ++x) {
+      if (rejections[x] == 0) continue;
+      disparities_px[x] = 0;
+      sigmas_px[x] = 0;
+    }
+  }
+}
+
 }  // namespace
 
 void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
@@ -80,8 +92,7 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   refine(disparity);
   dropSmallSurfaces(disparity);
   outline_check_.check(*winners_, sweep_input_, disparity.rejection);
-  disparity.disparity_px.setTo(0, disparity.rejection);
-  disparity.sigma_px.setTo(0, disparity.rejection);
+  clearRejected(disparity);
 }
 
 int StereoMatcher::windowFor(int image_width_px) const {

@@ -18,34 +18,26 @@ constexpr float kNone_px = -1e4F;
 constexpr float kModelSigma_px = 0.1F;
 constexpr float kLargestStep_px = 1.0F;
 
-struct Fit {
-  float ahead_px;  // of the winner: -0.5 .. 0.5
-  float sigma_px;
-};
-
-Fit fitOf(float before, float middle, float after, const CostNoise& noise) {
-  const float step = std::max(std::max(before, after) - middle, 1.F);
-  return {std::clamp((before - after) / (2 * step), -0.5F, 0.5F), noise.sigmaAt(middle) / (2 * step)};
-}
-
 }  // namespace
 
 void SubpixelRefiner::fitEach(const SubpixelInput& input) {
   const cv::Mat1b& rejection = *input.rejection;
   const Winners& winners = *input.winners;
   const CostNoise noise(input.window_px, input.cameras);
+  FitRow row;
+  row.width = rejection.cols;
+  row.noise_share = noise.share();
+  row.least_cost = CostNoise::kLeastCost;
+  row.none_px = kNone_px;
   for (int y = 0; y < rejection.rows; ++y) {
-    const std::uint8_t* rejections = rejection[y];
-    const short *before = winners.cost_before[y], *cost = winners.cost[y], *after = winners.cost_after[y];
-    const short* whole_px = winners.disparity_px[y];
-    float *disparities_px = disparity_px_[y + radius_px_] + radius_px_,
-          *weights = weight_[y + radius_px_] + radius_px_;
-    for (int x = 0; x < rejection.cols; ++x) {
-      const Fit fit = fitOf(before[x], cost[x], after[x], noise);
-      const bool answered = rejections[x] == 0;
-      disparities_px[x] = answered ? static_cast<float>(whole_px[x]) + fit.ahead_px : kNone_px;
-      weights[x] = answered ? 1 / (fit.sigma_px * fit.sigma_px) : 0;
-    }
+    row.whole_px = winners.disparity_px[y];
+    row.before = winners.cost_before[y];
+    row.cost = winners.cost[y];
+    row.after = winners.cost_after[y];
+    row.rejections = rejection[y];
+    row.fits_px = disparity_px_[y + radius_px_] + radius_px_;
+    row.weights = weight_[y + radius_px_] + radius_px_;
+    sweepKernels().fit(row);
   }
 }
 

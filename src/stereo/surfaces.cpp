@@ -62,10 +62,7 @@ void SurfaceFilter::label(const cv::Mat1f& disparity_px, const cv::Mat1b& eviden
   }
 }
 
-SurfaceFilter::Verdict SurfaceFilter::verdictOn(int label, const SurfaceParams& params) const {
-  if (label == kNone) return kGood;
-  const Surface& part = surfaces_[static_cast<std::size_t>(label)];
-  const Surface& surface = surfaces_[static_cast<std::size_t>(part.parent)];
+SurfaceFilter::Verdict SurfaceFilter::verdictOn(const Surface& surface, const SurfaceParams& params) {
   if (surface.pixels < params.smallest_px) return kSmall;
   return surface.strong < params.smallest_strong_px ? kWeak : kGood;
 }
@@ -73,11 +70,18 @@ SurfaceFilter::Verdict SurfaceFilter::verdictOn(int label, const SurfaceParams& 
 void SurfaceFilter::judge(const cv::Mat1f& disparity_px, const cv::Mat1b& evidence,
                           const SurfaceParams& params, cv::Mat1b& verdicts) {
   label(disparity_px, evidence, params.step_px);
-  for (Surface& surface : surfaces_)  // parents come first, so that one look leads to the root
+  verdict_of_.assign(1, kGood);         // of label kNone
+  for (Surface& surface : surfaces_) {  // parents come first, so that one look leads to the root
     surface.parent = surfaces_[static_cast<std::size_t>(surface.parent)].parent;
+    verdict_of_.push_back(verdictOn(surfaces_[static_cast<std::size_t>(surface.parent)], params));
+  }
   verdicts.create(disparity_px.size());
-  for (int y = 0; y < labels_.rows; ++y)
-    for (int x = 0; x < labels_.cols; ++x) verdicts(y, x) = verdictOn(labels_(y, x), params);
+  const std::uint8_t* verdict_of = verdict_of_.data() + 1;
+  for (int y = 0; y < labels_.rows; ++y) {
+    const int* labels = labels_[y];
+    std::uint8_t* out = verdicts[y];
+    for (int x = 0; x < labels_.cols; ++x) out[x] = verdict_of[labels[x]];
+  }
 }
 
 }  // namespace cornerstone

@@ -11,7 +11,8 @@ const SweepKernels& sweepKernelsAvx2();
 #endif
 
 const SweepKernels& plainSweepKernels() {
-  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown, average};
+  static const SweepKernels plain{kLanes,   pairCosts, slide,   windowCosts, pathsAlong,
+                                  pathDown, fit,       average, squash,      smooth};
   return plain;
 }
 

@@ -3,19 +3,11 @@
 // function, and it must not be one for a processor that has more.
 #pragma once
 
-#include <opencv2/core/hal/intrin.hpp>
-
-#include "cornerstone/stereo/sweep_kernels.h"
+#include "sweep_paths_impl.h"
+#include "sweep_vectors.h"
 
 namespace cornerstone {
 namespace {
-
-using Bytes = cv::v_uint8;
-using Words = cv::v_uint16;
-constexpr int kLanes = Bytes::nlanes;
-constexpr int kHalf = Words::nlanes;
-
-inline Bytes bytesOf(int value) { return cv::vx_setall_u8(static_cast<std::uint8_t>(value)); }
 
 inline Bytes differences(const std::uint8_t* const* lines, std::ptrdiff_t at, const Bytes* reference) {
   Bytes sum = cv::v_absdiff(cv::vx_load(lines[0] + at), reference[0]);
@@ -24,25 +16,21 @@ inline Bytes differences(const std::uint8_t* const* lines, std::ptrdiff_t at, co
   return sum;
 }
 
-inline Bytes countingUp() {
-  std::uint8_t steps[kLanes];
-  for (int i = 0; i < kLanes; ++i) steps[i] = static_cast<std::uint8_t>(i);
-  return cv::vx_load(steps);
-}
-
 // True for the lanes of a vector from disparity `first` on that are below `seen`.
 inline Bytes seenLanes(const Bytes& steps, int seen, int first) {
   const int left = seen - first;
   return steps < bytesOf(left < 0 ? 0 : left > 255 ? 255 : left);
 }
 
+template <int kVectors>
 inline void pairCostsOfPixel(const PairCostRow& row, int x, const Bytes& steps, std::uint8_t* costs) {
   Bytes reference[kFeatureChannels];
   for (int c = 0; c < kFeatureChannels; ++c) reference[c] = bytesOf(row.reference[c][x]);
   const SeenLines &one = row.cameras[0], &other = row.cameras[row.camera_count - 1];
   const int seen_by_one = one.seen[x], seen_by_other = other.seen[x];
-  const bool all_seen = seen_by_one >= row.disparities && seen_by_other >= row.disparities;
-  for (int i = 0; i < row.disparities; i += kLanes) {
+  const int disparities = kVectors > 0 ? kVectors * kLanes : row.disparities;
+  const bool all_seen = seen_by_one >= disparities && seen_by_other >= disparities;
+  for (int i = 0; i < disparities; i += kLanes) {
     Bytes a = differences(one.lines, x * one.step + i, reference);
     Bytes b = row.camera_count > 1 ? differences(other.lines, x * other.step + i, reference) : a;
     if (!all_seen) {  // what one camera does not see, the other counts for
@@ -56,10 +44,38 @@ inline void pairCostsOfPixel(const PairCostRow& row, int x, const Bytes& steps, 
   }
 }
 
-void pairCosts(const PairCostRow& row, std::uint8_t* costs) {
+// Lines that lie across the row are apart in memory: they are asked for some pixels ahead. Those of small
+// images stay in the cache.
+inline void fetchAhead(const SeenLines& camera, int x, int disparities) {
+  constexpr int kAhead = 6, kCacheLine_bytes = 64;
+  for (int c = 0; c < kFeatureChannels; ++c)
+    for (int i = 0; i < disparities + kCacheLine_bytes - 1; i += kCacheLine_bytes)
+      __builtin_prefetch(camera.lines[c] + (x + kAhead) * camera.step + i);
+}
+
+template <int kVectors>
+void pairCostsOfRow(const PairCostRow& given, std::uint8_t* costs) {
+  const PairCostRow row = given;  // no store can change it
   const Bytes steps = countingUp();
-  for (int x = 0; x < row.width; ++x)
-    pairCostsOfPixel(row, x, steps, costs + static_cast<std::ptrdiff_t>(x) * row.disparities);
+  const SeenLines& last = row.cameras[row.camera_count - 1];
+  const bool apart = kVectors != 1 && last.step > row.disparities;
+  for (int x = 0; x < row.width; ++x) {
+    if (apart) fetchAhead(last, x, row.disparities);
+    pairCostsOfPixel<kVectors>(row, x, steps, costs + static_cast<std::ptrdiff_t>(x) * row.disparities);
+  }
+}
+
+void pairCosts(const PairCostRow& row, std::uint8_t* costs) {
+  switch (row.disparities / kLanes) {
+    case 1:
+      return pairCostsOfRow<1>(row, costs);
+    case 2:
+      return pairCostsOfRow<2>(row, costs);
+    case 3:
+      return pairCostsOfRow<3>(row, costs);
+    default:
+      return pairCostsOfRow<0>(row, costs);
+  }
 }
 
 void slide(std::uint16_t* sums, const std::uint8_t* entering, const std::uint8_t* leaving, int count) {
@@ -88,7 +104,8 @@ inline void slideWindow(const WindowRow& row, int x, std::uint16_t* sums) {
                                          cv::vx_load(leaving + i)));
 }
 
-void windowCosts(const WindowRow& row, std::uint16_t* sums, std::uint8_t* costs) {
+void windowCosts(const WindowRow& given, std::uint16_t* sums, std::uint8_t* costs) {
+  const WindowRow row = given;  // no store can change it
   const Words scale = cv::vx_setall_u16(static_cast<std::uint16_t>(row.scale));
   for (int x = 0; x < row.width; ++x, sums += row.disparities, costs += row.disparities) {
     x == 0 ? firstWindow(row, sums) : slideWindow(row, x, sums);
@@ -104,121 +121,58 @@ void windowCosts(const WindowRow& row, std::uint16_t* sums, std::uint8_t* costs)
   }
 }
 
-// One pixel of a path (Hirschmueller, 2008, equation 13), with p the path costs of the pixel before:
-//   L(i) = C(i) + min(p(i), p(i - 1) + P1, p(i + 1) + P1, min p + P2) - min p
-class PathStep {
- public:
-  PathStep(int lowest_before, int jump_penalty, const Bytes& slope_penalty)
-      : lowest_before_(bytesOf(lowest_before)),
-        limit_(bytesOf(lowest_before) + bytesOf(jump_penalty)),
-        slope_penalty_(slope_penalty) {}
-  Bytes operator()(const Bytes& below, const Bytes& here, const Bytes& above, const Bytes& cost) const {
-    const Bytes beside = cv::v_min(below, above) + slope_penalty_;
-    return cost + (cv::v_min(cv::v_min(here, beside), limit_) - lowest_before_);
+inline cv::v_float32 floatsOf(const short* values) { return cv::v_cvt_f32(cv::vx_load_expand(values)); }
+
+inline void fitVector(const FitRow& row, int x) {
+  using Floats = cv::v_float32;
+  const Floats half = cv::vx_setall_f32(0.5F), zero = cv::vx_setzero_f32();
+  const Floats cost = floatsOf(row.cost + x);
+  const Floats fall = floatsOf(row.before + x) - cost, rise = floatsOf(row.after + x) - cost;
+  const Floats step = cv::v_max(cv::v_max(fall, rise), cv::vx_setall_f32(1));
+  const Floats twice = step + step;
+  const Floats ahead = cv::v_min(cv::v_max((fall - rise) / twice, zero - half), half);
+  const Floats root_weight =
+      twice / (cv::vx_setall_f32(row.noise_share) * (cost + cv::vx_setall_f32(row.least_cost)));
+  const cv::v_int32 rejection = cv::v_reinterpret_as_s32(cv::vx_load_expand_q(row.rejections + x));
+  const Floats answered = cv::v_reinterpret_as_f32(rejection == cv::vx_setzero_s32());
+  const Floats fit = floatsOf(row.whole_px + x) + ahead;
+  cv::v_store(row.fits_px + x, cv::v_select(answered, fit, cv::vx_setall_f32(row.none_px)));
+  cv::v_store(row.weights + x, root_weight * root_weight & answered);
+}
+
+// A row of less than a vector, in a row of one.
+void fitNarrow(const FitRow& row) {
+  constexpr int kFloats = cv::v_float32::nlanes;
+  short whole_px[kFloats] = {}, before[kFloats] = {}, cost[kFloats] = {}, after[kFloats] = {};
+  std::uint8_t rejections[kLanes] = {};
+  float fits_px[kFloats], weights[kFloats];
+  FitRow wide = row;
+  for (int x = 0; x < row.width; ++x) {
+    whole_px[x] = row.whole_px[x];
+    before[x] = row.before[x];
+    cost[x] = row.cost[x];
+    after[x] = row.after[x];
+    rejections[x] = row.rejections[x];
   }
-
- private:
-  Bytes lowest_before_, limit_, slope_penalty_;
-};
-
-// One path through a row; `here` are the path costs of the pixel reached.
-class Path {
- public:
-  Path(const PathRow& row, int first, std::uint8_t* here)
-      : row_(row), slope_penalty_(bytesOf(row.slope_penalty)), here_(here) {
-    // Nothing before the first pixel: its own costs.
-    lowest_ = take(PathStep(0, 0, slope_penalty_), first, here);
-  }
-  // On to a neighbouring column, whose costs are to be written `by` further.
-  void go(int column, int jump_penalty, std::ptrdiff_t by) {
-    lowest_ = take(PathStep(lowest_, jump_penalty, slope_penalty_), column, here_ + by);
-    here_ += by;
-  }
-
- private:
-  int take(const PathStep& step, int column, std::uint8_t* out) const {
-    const std::uint8_t* costs = row_.costs + static_cast<std::ptrdiff_t>(column) * row_.disparities;
-    Bytes lowest = bytesOf(255);
-    for (int i = 0; i < row_.disparities; i += kLanes) {
-      const Bytes sum = step(cv::vx_load(here_ + i - 1), cv::vx_load(here_ + i), cv::vx_load(here_ + i + 1),
-                             cv::vx_load(costs + i));
-      cv::v_store(out + i, sum);
-      lowest = cv::v_min(lowest, sum);
-    }
-    out[-1] = out[row_.disparities] = 255;
-    return cv::v_reduce_min(lowest);
-  }
-
-  const PathRow& row_;
-  Bytes slope_penalty_;
-  std::uint8_t* here_;
-  int lowest_ = 0;
-};
-
-// Both paths together: each waits for its own last pixel.
-void pathsAlong(const PathRow& row) {
-  const int last = row.width - 1;
-  const std::ptrdiff_t stride = row.disparities + 2;
-  Path left(row, 0, row.from_left + 1), right(row, last, row.from_right + 1 + last * stride);
-  for (int x = 1; x < row.width; ++x) {
-    const int mirror = last - x;
-    left.go(x, row.jump_ahead[x], stride);
-    right.go(mirror, row.jump_ahead[mirror + 1], -stride);
+  wide.whole_px = whole_px;
+  wide.before = before;
+  wide.cost = cost;
+  wide.after = after;
+  wide.rejections = rejections;
+  wide.fits_px = fits_px;
+  wide.weights = weights;
+  fitVector(wide, 0);
+  for (int x = 0; x < row.width; ++x) {
+    row.fits_px[x] = fits_px[x];
+    row.weights[x] = weights[x];
   }
 }
 
-inline int indexOf(int value, const std::uint8_t* values) {
-  const Bytes wanted = bytesOf(value);
-  int i = 0;
-  Bytes found = cv::vx_load(values) == wanted;
-  while (!cv::v_check_any(found)) found = cv::vx_load(values + (i += kLanes)) == wanted;
-  return i + cv::v_scan_forward(found);
-}
-
-// `steps` count up from 2; `lowest` is among the sums.
-inline PathWinner winnerOf(const PathRow& row, const std::uint8_t* costs, int lowest, const Bytes& steps) {
-  const int index = indexOf(lowest, row.sums);
-  const Bytes one = bytesOf(1);
-  Bytes second = bytesOf(255), rival = second;
-  for (int i = 0; i < row.disparities; i += kLanes) {
-    const int ahead = index - i;  // lanes within one of it do not count
-    Bytes sum = cv::vx_load(row.sums + i), cost = cv::vx_load(costs + i);
-    if (ahead >= -1 && ahead <= kLanes) {
-      const Bytes beside = cv::v_absdiff(steps, bytesOf(ahead + 2)) <= one;
-      sum = sum | beside;
-      cost = cost | beside;
-    }
-    second = cv::v_min(second, sum);
-    rival = cv::v_min(rival, cost);
-  }
-  const int margin = cv::v_reduce_min(second) - lowest, lead = cv::v_reduce_min(rival) - costs[index];
-  return {static_cast<short>(index), static_cast<std::uint8_t>(margin),
-          static_cast<std::uint8_t>(lead > 0 ? lead : 0)};
-}
-
-void pathDown(const PathRow& row) {
-  const int n = row.disparities;
-  const std::ptrdiff_t stride = n + 2;
-  const Bytes slope_penalty = bytesOf(row.slope_penalty), steps = countingUp() + bytesOf(2);
-  const std::uint8_t *costs = row.costs, *left = row.from_left + 1, *right = row.from_right + 1;
-  std::uint8_t* down = row.from_above + 1;
-  for (int x = 0; x < row.width; ++x, costs += n, left += stride, right += stride, down += stride) {
-    const PathStep step(row.lowest_above[x], row.jump_down[x], slope_penalty);
-    Bytes lowest = bytesOf(255), lowest_sum = lowest, below = cv::vx_load(down - 1);
-    for (int i = 0; i < n; i += kLanes) {
-      const Bytes next_below = cv::vx_load(down + i + kLanes - 1);  // before it is overwritten
-      const Bytes path =
-          step(below, cv::vx_load(down + i), cv::vx_load(down + i + 1), cv::vx_load(costs + i));
-      below = next_below;
-      cv::v_store(down + i, path);
-      lowest = cv::v_min(lowest, path);
-      const Bytes sum = path + cv::vx_load(left + i) + cv::vx_load(right + i);
-      cv::v_store(row.sums + i, sum);
-      lowest_sum = cv::v_min(lowest_sum, sum);
-    }
-    row.lowest_above[x] = static_cast<std::uint8_t>(cv::v_reduce_min(lowest));
-    row.winners[x] = winnerOf(row, costs, cv::v_reduce_min(lowest_sum), steps);
-  }
+void fit(const FitRow& row) {
+  constexpr int kFloats = cv::v_float32::nlanes;
+  if (row.width < kFloats) return fitNarrow(row);
+  for (int x = 0; x < row.width - kFloats; x += kFloats) fitVector(row, x);
+  fitVector(row, row.width - kFloats);
 }
 
 void average(const AverageRow& row) {
@@ -235,6 +189,34 @@ void average(const AverageRow& row) {
     }
     cv::v_store(row.means + x, middle + sum / cv::v_max(weights, least));
     cv::v_store(row.weight_sums + x, weights);
+  }
+}
+
+inline cv::v_int32 squashed(const cv::v_int32& difference, const cv::v_float32& noise) {
+  const cv::v_float32 half = cv::vx_setall_f32(kLargestFeature / 2.F);
+  const cv::v_float32 g = cv::v_cvt_f32(difference);
+  return cv::v_round(half + half * g / (cv::v_abs(g) + noise));
+}
+
+void squash(const SquashRow& row, std::uint8_t* features) {
+  const cv::v_float32 noise = cv::vx_setall_f32(row.noise_grey);
+  for (int x = 0; x < row.width; x += kHalf) {
+    const cv::v_int16 difference = cv::v_reinterpret_as_s16(cv::vx_load_expand(row.ahead + x)) -
+                                   cv::v_reinterpret_as_s16(cv::vx_load_expand(row.behind + x));
+    cv::v_int32 low, high;
+    cv::v_expand(difference, low, high);
+    cv::v_pack_u_store(features + x, cv::v_pack(squashed(low, noise), squashed(high, noise)));
+  }
+}
+
+void smooth(const std::uint8_t* const* rows, int width, std::uint8_t* out) {
+  const auto across = [&](int x) {
+    const Words middle = cv::vx_load_expand(rows[1] + x);
+    return cv::vx_load_expand(rows[0] + x) + middle + middle + cv::vx_load_expand(rows[2] + x);
+  };
+  for (int x = 0; x < width; x += kHalf) {
+    const Words middle = across(x);
+    cv::v_rshr_pack_store<4>(out + x, across(x - 1) + middle + middle + across(x + 1));
   }
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 
 #include "cornerstone/stereo/cost_noise.h"
+#include "cornerstone/stereo/fill.h"
 
 namespace cornerstone {
 namespace {
@@ -68,52 +68,43 @@ void Validator::checkWinners(const Winners& winners, const SweepInput& input, co
   }
 }
 
-namespace {
+// A claim is its cost, and below it its disparity.
+constexpr int kCostUnit = 1 << 16;
 
-// Where a secondary camera sees reference pixels, as an index into its image.
-class Projection {
- public:
-  Projection(const SecondaryView& view, cv::Size size, std::vector<cv::Point>& offsets)
-      : size_(size), offsets_(offsets) {
-    offsets_.clear();
-    for (int d = 0; d <= view.disparities(); ++d) offsets_.push_back(view.offsetAt(d));
+// Steps from a reference pixel to where a secondary image, laid out in memory as the reference image, shows
+// it at each disparity.
+void Validator::countSteps(const SecondaryView& view, int width) {
+  steps_.resize(static_cast<std::size_t>(view.disparities() + 1));
+  for (int d = 0; d <= view.disparities(); ++d) {
+    const cv::Point offset = view.offsetAt(d);
+    steps_[static_cast<std::size_t>(d)] = offset.y * width + offset.x;
   }
-  int of(int x, int y, int disparity_px) const {  // -1: not in the image
-    const cv::Point offset = offsets_[static_cast<std::size_t>(disparity_px)];
-    const int sx = x + offset.x, sy = y + offset.y;
-    const bool inside = static_cast<unsigned>(sx) < static_cast<unsigned>(size_.width) &&
-                        static_cast<unsigned>(sy) < static_cast<unsigned>(size_.height);
-    return inside ? sy * size_.width + sx : -1;
-  }
-
- private:
-  cv::Size size_;
-  std::vector<cv::Point>& offsets_;
-};
-
-}  // namespace
+}
 
 void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
                                cv::Mat1b& rejection) {
-  const Projection seen_at(view, rejection.size(), offsets_);
-  constexpr int kCostUnit = 1 << 16;  // a claim is its cost, and below it its disparity
+  const int width = rejection.cols;
+  countSteps(view, width);
+  const int* steps = steps_.data();
   claims_.create(rejection.size());
-  claims_.setTo(std::numeric_limits<int>::max());
-  int* claims = claims_[0];
+  fillAll(claims_, std::numeric_limits<int>::max());
   for (int y = 0; y < rejection.rows; ++y) {
-    const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y];
-    for (int x = 0; x < rejection.cols; ++x) {
-      const int seen = seen_at.of(x, y, disparities_px[x]);
-      if (seen >= 0) claims[seen] = std::min(claims[seen], costs[x] * kCostUnit + disparities_px[x]);
+    const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
+    int* claims = claims_[y];
+    for (int x = 0; x < width; ++x) {
+      if (disparities_px[x] > seen[x]) continue;
+      int& claim = claims[x + steps[disparities_px[x]]];
+      claim = std::min(claim, costs[x] * kCostUnit + disparities_px[x]);
     }
   }
   for (int y = 0; y < rejection.rows; ++y) {
-    const short* disparities_px = winners.disparity_px[y];
+    const short *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
+    const int* claims = claims_[y];
     std::uint8_t* rejections = rejection[y];
-    for (int x = 0; x < rejection.cols; ++x) {
-      if (rejections[x] != codeOf(Rejection::kNone)) continue;
-      const int seen = seen_at.of(x, y, disparities_px[x]);
-      if (seen >= 0 && std::abs(claims[seen] % kCostUnit - disparities_px[x]) > tolerance_px)
+    for (int x = 0; x < width; ++x) {
+      if (rejections[x] != 0 || disparities_px[x] > seen[x]) continue;
+      const int claimed_px = claims[x + steps[disparities_px[x]]] & (kCostUnit - 1);
+      if (std::abs(claimed_px - disparities_px[x]) > tolerance_px)
         rejections[x] = codeOf(Rejection::kLeftRight);
     }
   }
@@ -121,8 +112,14 @@ void Validator::checkSecondary(const Winners& winners, const SecondaryView& view
 
 void Validator::checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
                               cv::Mat1b& rejection) {
-  cv::blur(winners.own_cost, own_costs_, {input.window_px, input.window_px}, {-1, -1}, cv::BORDER_REFLECT);
-  rejection.setTo(codeOf(Rejection::kTexture), (own_costs_ > largest_share * kChanceCost) & (rejection == 0));
+  box_sums_.compute(winners.own_cost, input.window_px, own_costs_);
+  const double largest = largest_share * kChanceCost * input.window_px * input.window_px;
+  for (int y = 0; y < rejection.rows; ++y) {
+    const short* costs = own_costs_[y];
+    std::uint8_t* rejections = rejection[y];
+    for (int x = 0; x < rejection.cols; ++x)
+      if (costs[x] > largest && rejections[x] == 0) rejections[x] = codeOf(Rejection::kTexture);
+  }
 }
 
 }  // namespace cornerstone

@@ -10,14 +10,14 @@ namespace cornerstone {
 
 class CostNoise {
  public:
+  static constexpr float kLeastCost = 16;  // images are rounded to grey levels
   CostNoise(int window_px, std::size_t cameras)
       : factor_(kFactor / static_cast<float>(window_px) * std::sqrt(2.F / static_cast<float>(cameras))) {}
-  float sigmaAt(float cost) const { return factor_ * (cost + kLeastCost); }
-  float share() const { return factor_; }  // of the cost, without what rounding adds
+  // Of the cost and kLeastCost together.
+  float share() const { return factor_; }
 
  private:
   static constexpr float kFactor = 0.85F;
-  static constexpr float kLeastCost = 16;  // images are rounded to grey levels
   float factor_;
 };
 

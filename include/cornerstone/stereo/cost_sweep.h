@@ -14,6 +14,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "cornerstone/stereo/box_sums.h"
 #include "cornerstone/stereo/secondary_view.h"
 
 namespace cornerstone {
@@ -63,13 +64,13 @@ class CostSweep {
   cv::Mat1b zeros_;
   cv::Mat_<std::uint16_t> column_sums_, sums_;
   cv::Mat1b costs_, from_left_, from_right_, from_above_, lowest_above_, path_sums_;
-  std::array<std::uint8_t, 256> jump_penalty_{};  // by brightness step
   std::vector<std::uint8_t> jump_ahead_, jump_down_;
   std::vector<PathWinner> path_winners_;
   cv::Mat1s nearest_, farthest_;  // window costs of the disparities just outside the search
   cv::Mat1b plane_;               // pair costs at one disparity
   std::array<cv::Mat1b, 2> camera_planes_;
   cv::Mat1b unseen_costs_;
+  BoxSums box_sums_;
   Winners winners_;
 };
 

@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "cornerstone/stereo/cost_sweep.h"
+#include "cornerstone/stereo/winner_steps.h"
 
 namespace cornerstone {
 
@@ -22,6 +23,7 @@ class EdgeCheck {
   bool standsOut(const Winners& winners, const SweepInput& input, cv::Point at,
                  double smallest_cost_ratio) const;
 
+  WinnerSteps steps_;
   cv::Mat1b before_;  // rejections as they came in
 };
 

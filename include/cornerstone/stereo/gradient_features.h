@@ -22,7 +22,7 @@ class GradientFeatures {
 
   void compute(const cv::Mat1b& image);
   const cv::Mat1b& channel(std::size_t index) const { return channels_[index]; }
-  const cv::Mat1b& smooth() const { return smooth_; }
+  const cv::Mat1b& smooth() const { return smooth_; }  // the image smoothed by 3 x 3
   cv::Size size() const { return channels_[0].size(); }
   // Sum over the channels of the absolute differences.
   int costAt(cv::Point here, const GradientFeatures& other, cv::Point there) const;
@@ -34,7 +34,9 @@ class GradientFeatures {
  private:
   std::array<cv::Mat1b, kChannels> channels_;
   cv::Mat4b together_;  // the same channels pixel by pixel, and one row more for reading whole vectors
-  cv::Mat1b smooth_, padded_, padded_smooth_;  // kept, so that nothing is allocated frame by frame
+  cv::Mat1b smooth_;    // within padded_smooth_
+  std::array<cv::Mat1b, kChannels> planes_;  // that channels_ lie in, with room for whole vectors
+  cv::Mat1b padded_, padded_smooth_;
 };
 
 }  // namespace cornerstone

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cornerstone/stereo/cost_sweep.h"
+#include "cornerstone/stereo/winner_steps.h"
 
 namespace cornerstone {
 
@@ -24,7 +25,11 @@ class OutlineCheck {
  private:
   void checkSide(const Winners& winners, const cv::Mat1b& grey, cv::Point at, cv::Point outward);
 
+  const std::uint8_t* endsOf(const Winners& winners, int y);
+
   int window_radius_px_ = 0;
+  WinnerSteps steps_;
+  std::vector<std::uint8_t> ends_;
   cv::Mat1b before_;                 // rejections as they came in
   std::vector<cv::Point> outlying_;  // to be dropped
 };

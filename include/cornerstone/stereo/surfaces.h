@@ -32,10 +32,11 @@ class SurfaceFilter {
   int rootOf(int surface);
   void join(int one, int other);
   void label(const cv::Mat1f& disparity_px, const cv::Mat1b& evidence, float step_px);
-  Verdict verdictOn(int label, const SurfaceParams& params) const;
+  static Verdict verdictOn(const Surface& surface, const SurfaceParams& params);
 
   cv::Mat1i labels_;
   std::vector<Surface> surfaces_;
+  std::vector<std::uint8_t> verdict_of_;  // by label + 1
 };
 
 }  // namespace cornerstone

@@ -69,6 +69,23 @@ struct AverageRow {
   float *means = nullptr, *weight_sums = nullptr;
 };
 
+// Equiangular fits of a row, see SubpixelRefiner.
+struct FitRow {
+  const short *whole_px = nullptr, *before = nullptr, *cost = nullptr, *after = nullptr;
+  const std::uint8_t* rejections = nullptr;
+  int width = 0;
+  float noise_share = 1, least_cost = 0;  // sigma of a cost: noise_share * (cost + least_cost)
+  float none_px = 0;                      // the answer of a rejected pixel, whose weight is 0
+  float *fits_px = nullptr, *weights = nullptr;
+};
+
+// Features of a row: see GradientFeatures. Whole vectors are read and written beyond the end.
+struct SquashRow {
+  const std::uint8_t *ahead = nullptr, *behind = nullptr;
+  float noise_grey = 1;
+  int width = 0;
+};
+
 struct SweepKernels {
   int lanes;  // disparities are padded to a multiple
   void (*pairCosts)(const PairCostRow& row, std::uint8_t* costs);
@@ -80,7 +97,11 @@ struct SweepKernels {
   void (*pathsAlong)(const PathRow& row);
   // Takes the path from above on to this row, and chooses the winners by the sum of all paths.
   void (*pathDown)(const PathRow& row);
+  void (*fit)(const FitRow& row);
   void (*average)(const AverageRow& row);
+  void (*squash)(const SquashRow& row, std::uint8_t* features);
+  // Weights 1 2 1 along and across, over 16; rows[1] is the middle one. Reads one pixel before the row.
+  void (*smooth)(const std::uint8_t* const* rows, int width, std::uint8_t* out);
 };
 
 const SweepKernels& sweepKernels();       // the fastest that this processor has

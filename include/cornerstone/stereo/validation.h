@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "cornerstone/stereo/box_sums.h"
 #include "cornerstone/stereo/cost_sweep.h"
 #include "cornerstone/stereo/disparity.h"
 #include "cornerstone/stereo/edge_check.h"
@@ -35,6 +36,7 @@ class Validator {
  private:
   void checkWinners(const Winners& winners, const SweepInput& input, const ValidationParams& params,
                     cv::Mat1b& rejection);
+  void countSteps(const SecondaryView& view, int width);
   // Two reference pixels that a secondary camera would see at one place: only the better matching one can be
   // right.
   void checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
@@ -46,9 +48,11 @@ class Validator {
                      cv::Mat1b& rejection);
 
   EdgeCheck edge_check_;
-  cv::Mat1b own_costs_, evidence_;
+  BoxSums box_sums_;
+  cv::Mat1s own_costs_;
+  cv::Mat1b evidence_;
   cv::Mat1i claims_;  // by secondary pixel
-  std::vector<cv::Point> offsets_;
+  std::vector<int> steps_;
 };
 
 }  // namespace cornerstone
