@@ -14,6 +14,8 @@ void stereoPart();
 void mappingPart();
 void registrationPart();
 void registrationLimitsPart();
+void registrationCostPart();
+void registrationMeetingPart(int seeds);
 
 inline double elapsed_ms(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures cornerstone beside its peers (OpenCV's stereo, MRPT's insertion and aligner) and rewrites bench/RESULTS.md.
-# One thread; some minutes. The build folder is left as it was, without the benchmark program.
+# One thread; some minutes. scripts/bench.sh [SEEDS]: of the two robots that meet (default 2, 20 takes hours). The build folder is left as it was, without the benchmark program.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh
@@ -32,7 +32,7 @@ head_lines() {
   echo "- Data: the package's simulator (\`worlds/*.yaml\`, seed 1) and \`/usr/share/mrpt/datasets\` (package mrpt-common)"
 }
 head_lines >"$report"
-"$(find build/devel -type f -name cornerstone_bench | head -n 1)" >>"$report"
+"$(find build/devel -type f -name cornerstone_bench | head -n 1)" "${1:-2}" >>"$report"
 cat bench/what_they_do_not_say.md >>"$report"
 cp "$report" bench/RESULTS.md
 cat bench/RESULTS.md

@@ -10,7 +10,7 @@
 
 namespace cornerstone {
 
-struct Box {
+struct DrawnBox {
   double low_x_m, low_y_m, high_x_m, high_y_m;
   bool contains(const Eigen::Vector2d& p) const {
     return p.x() >= low_x_m && p.x() < high_x_m && p.y() >= low_y_m && p.y() < high_y_m;
@@ -20,14 +20,14 @@ struct Box {
 // A world of free rooms in solid rock, with solid boxes in them; only rock within wall_m of free space is
 // seen.
 struct DrawnWorld {
-  std::vector<Box> rooms;
-  std::vector<Box> solids;
+  std::vector<DrawnBox> rooms;
+  std::vector<DrawnBox> solids;
   double wall_m = 0.12;
 
   bool isFree(const Eigen::Vector2d& p) const {
-    for (const Box& solid : solids)
+    for (const DrawnBox& solid : solids)
       if (solid.contains(p)) return false;
-    for (const Box& room : rooms)
+    for (const DrawnBox& room : rooms)
       if (room.contains(p)) return true;
     return false;
   }
@@ -44,7 +44,7 @@ struct DrawnWorld {
 
 struct DrawnView {
   Pose2 world_from_map;
-  Box seen{-1e3, -1e3, 1e3, 1e3};  // of the world
+  DrawnBox seen{-1e3, -1e3, 1e3, 1e3};  // of the world
   double noise =
       0;  // share of the wall cells that are missing, and of free cells beside walls that are not free
   unsigned seed = 1;
@@ -53,7 +53,7 @@ struct DrawnView {
 
 inline GridMap draw(const DrawnWorld& world, const DrawnView& view) {
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
-  for (const Box& room : world.rooms) {
+  for (const DrawnBox& room : world.rooms) {
     const double x0 = std::max(room.low_x_m, view.seen.low_x_m),
                  x1 = std::min(room.high_x_m, view.seen.high_x_m);
     const double y0 = std::max(room.low_y_m, view.seen.low_y_m),
