@@ -12,6 +12,7 @@ namespace cornerstone::bench {
 
 void stereoPart();
 void mappingPart();
+void mappingSizePart();
 void registrationPart();
 void registrationLimitsPart();
 void registrationCostPart();

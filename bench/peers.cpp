@@ -42,7 +42,7 @@ cv::Mat1f matchOpenCV(cv::StereoMatcher& matcher, const cv::Mat1b& reference, co
 }
 
 std::vector<double> nearestRanges(const cv::Mat1f& disparity_px, const CameraView& view) {
-  const ScanParams band;
+  const Level band = ScanParams().levels.front();
   std::vector<double> ranges_m(static_cast<std::size_t>(disparity_px.cols), 0);
   for (int col = 0; col < disparity_px.cols; ++col)
     for (int row = 0; row < disparity_px.rows; ++row) {

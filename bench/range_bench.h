@@ -1,10 +1,8 @@
-// See range_bench.cpp.
+// Part of the stereo tables: see range_bench.cpp.
 #pragma once
-
-#include "cornerstone/simulation/world.h"
 
 namespace cornerstone::bench {
 
-void rangePart(const World& world);
+void rangePart();
 
 }  // namespace cornerstone::bench

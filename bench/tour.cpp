@@ -25,7 +25,7 @@ RigParams rigOf(int width_px) {
   return rig;
 }
 
-int maxDisparityOf(int width_px) { return width_px / 5; }
+int maxDisparityOf(int width_px) { return std::min(width_px / 5, 96); }
 
 Eigen::Isometry3d spatial(const Pose2& pose) {
   Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();

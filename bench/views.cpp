@@ -9,30 +9,33 @@ const CameraFaultParams kFaults{2.0, 0.05, 0.1, 0};
 
 }  // namespace
 
-std::vector<Pose2> posesOf(const World& world, int count) {
+Tour tourOf(const TourName& name, int poses) {
+  Tour tour;
+  tour.world = shippedWorld(name.world);
+  tour.world.seed += 100 * (name.seed - 1);
+  tour.seed = name.seed;
   SimulationParams params;
-  params.robots = {"a"};
+  params.robots = {name.robot};
   std::vector<Pose2> route;
-  Simulation simulation(world, params);
+  Simulation simulation(tour.world, params);
   while (!simulation.routesDone()) {
     simulation.step();
     route.push_back(simulation.frames(false).front().world_from_base);
   }
-  std::vector<Pose2> poses;
-  for (int i = 0; i < count; ++i)
-    poses.push_back(route[route.size() * (2 * std::size_t(i) + 1) / (2 * std::size_t(count))]);
-  return poses;
+  for (int i = 0; i < poses; ++i)
+    tour.poses.push_back(route[route.size() * (2 * std::size_t(i) + 1) / (2 * std::size_t(poses))]);
+  return tour;
 }
 
-std::vector<View> renderViews(const World& world, const std::vector<Pose2>& poses, const RigParams& rig) {
+std::vector<View> renderViews(const Tour& tour, const RigParams& rig) {
   const double focal_px = focalLength(rig);
   Renderer renderer(
-      world, {},
+      tour.world, {},
       {{rig.width_px, rig.height_px}, focal_px, (rig.width_px - 1) / 2.0, (rig.height_px - 1) / 2.0});
-  CameraFaults faults(kFaults, focal_px, 1);
+  CameraFaults faults(kFaults, focal_px, tour.seed);
   const auto base_from_cameras = baseFromCameras(rig);
   std::vector<View> views;
-  for (const Pose2& pose : poses) {
+  for (const Pose2& pose : tour.poses) {
     std::array<cv::Mat1b, kCameraCount> images;
     for (std::size_t camera = 0; camera < kCameraCount; ++camera) {
       Eigen::Isometry3d at = spatial(pose) * base_from_cameras[camera];

@@ -1,11 +1,15 @@
 #!/usr/bin/python3
-"""calibrate_rig from the outside: rendered boards of three cameras, and the real set of Debian's opencv-doc."""
+"""calibrate_rig from the outside: rendered boards of three cameras, and the real set of Debian's opencv-doc,
+each as files and as a recording."""
 import gzip
 from pathlib import Path
 
 import cv2
 import numpy
+import rosbag
+import rospy
 import yaml
+from sensor_msgs.msg import CompressedImage, Image
 
 import program_case
 
@@ -35,6 +39,15 @@ def rendered(rotation, position_m, camera_m, square_px=40):
     return cv2.resize(large, SIZE, interpolation=cv2.INTER_AREA)
 
 
+def message_of(picture, time_s, compressed=False):
+    if compressed:
+        message = CompressedImage(format="png", data=cv2.imencode(".png", picture)[1].tobytes())
+    else:
+        message = Image(height=picture.shape[0], width=picture.shape[1], step=picture.shape[1], encoding="mono8", data=picture.tobytes())
+    message.header.stamp = rospy.Time.from_sec(time_s)
+    return message
+
+
 class CalibrateRig(program_case.ProgramCase):
     def render(self, sets=12):
         random = numpy.random.default_rng(2)
@@ -52,13 +65,64 @@ class CalibrateRig(program_case.ProgramCase):
     def info(self, name):
         return yaml.safe_load((self.folder / "out" / f"{name}.yaml").read_text())
 
+    def record(self, folders, late_s=0.0, times=1, compressed=False):
+        """The images of some folders, or patterns, as a bag; every board is seen so many times on end."""
+        path = self.folder / "boards.bag"
+        with rosbag.Bag(str(path), "w") as bag:
+            for name, pattern in folders.items():
+                for i, file in enumerate(sorted(self.folder.glob(pattern))):
+                    picture = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
+                    for repeat in range(times):
+                        time_s = 100 + i + 0.1 * repeat + (late_s if name != "reference" else 0)
+                        message = message_of(picture, time_s, compressed)
+                        bag.write(f"/a/{name}/image_raw", message, message.header.stamp)
+        return path
+
+    def check_three(self, answer, sets):
+        for pair in ("right", "top"):
+            self.assertEqual(answer["pairs"][pair]["sets"], sets)
+            self.assertAlmostEqual(answer["pairs"][pair]["baseline_m"], BASELINE_M, delta=0.001)
+            self.assertLess(answer["pairs"][pair]["epipolar_rms_px"], 0.3)
+
+    BOARD_OPTIONS = ("--board", "8x6", "--square", SQUARE_M)
+    THREE_TOPICS = "/a/reference/image_raw,/a/right/image_raw,/a/top/image_raw"
+
+    def test_a_bag_of_three_rendered_cameras(self):
+        self.render()
+        bag = self.record({name: f"{name}/*.png" for name in CAMERAS}, late_s=0.002, times=3)
+        self.check_three(self.calibrate("--bag", bag, "--topics", self.THREE_TOPICS, *self.BOARD_OPTIONS), 12)
+
+    def test_a_bag_of_compressed_images(self):
+        self.render()
+        bag = self.record({name: f"{name}/*.png" for name in CAMERAS}, compressed=True)
+        self.check_three(self.calibrate("--bag", bag, "--topics", self.THREE_TOPICS, *self.BOARD_OPTIONS), 12)
+
+    def test_bags_that_do_not_do(self):
+        self.render(sets=6)
+        bag = self.record({name: f"{name}/*.png" for name in CAMERAS}, late_s=0.02)
+        options = (*self.BOARD_OPTIONS, "--out", "out")
+        two = "/a/reference/image_raw,/a/right/image_raw"
+        self.assert_refused("only 0 boards", "calibrate_rig", "--bag", bag, "--topics", two, *options)
+        self.assertTrue(self.calibrate("--bag", bag, "--topics", two, "--tolerance", 0.03, *self.BOARD_OPTIONS)["calibrated"])
+        for topics, named in (("/a/reference/image_raw,/a/left", f"{bag}: no topic /a/left; it holds /a/reference/image_raw"),
+                              ("/a/reference/image_raw", "--topics"), ("", "--topics")):
+            self.assert_refused(named, "calibrate_rig", "--bag", bag, "--topics", topics, *options)
+        self.assert_refused("expected 0 arguments", "calibrate_rig", "reference", "--bag", bag, "--topics", two, *options)
+        self.assert_refused("nowhere.bag", "calibrate_rig", "--bag", "nowhere.bag", "--topics", two, *options)
+        self.assert_refused("none.bag", "calibrate_rig", "--bag", self.file("none.bag", "no bag"), "--topics", two, *options)
+        with rosbag.Bag(str(self.folder / "odd.bag"), "w") as odd:
+            odd.write("/a/reference/image_raw", Image(encoding="jelly", width=2, height=2, step=2, data=bytes(4)))
+            odd.write("/a/right/image_raw", message_of(numpy.zeros((2, 2), numpy.uint8), 1))
+            odd.write("/a/time", rospy.Header())
+        self.assert_refused("odd.bag, /a/reference/image_raw: encoding 'jelly'", "calibrate_rig", "--bag", "odd.bag", "--topics", two, *options)
+        self.assert_refused("/a/time is of type std_msgs/Header, no images", "calibrate_rig", "--bag", "odd.bag", "--topics",
+                            "/a/right/image_raw,/a/time", *options)
+
     def test_three_rendered_cameras(self):
         self.render()
         answer = self.calibrate("reference", "right", "--top", "top", "--board", "8x6", "--square", SQUARE_M)
         self.assertTrue(answer["calibrated"])
-        for pair in ("right", "top"):
-            self.assertAlmostEqual(answer["pairs"][pair]["baseline_m"], BASELINE_M, delta=0.001)
-            self.assertLess(answer["pairs"][pair]["epipolar_rms_px"], 0.3)
+        self.check_three(answer, 12)
         for name in CAMERAS:
             info = self.info(name)
             self.assertEqual((info["image_width"], info["image_height"], info["camera_name"]), (*SIZE, name))
@@ -71,6 +135,20 @@ class CalibrateRig(program_case.ProgramCase):
         self.assertAlmostEqual(self.info("top")["projection_matrix"]["data"][7], focal * BASELINE_M, delta=0.4)
         picture = cv2.imread(str(self.folder / "out" / "epipolar.png"))
         self.assertEqual(picture.shape, (SIZE[1], 2 * SIZE[0] + 10, 3))
+
+    def test_ros_reads_the_calibration(self):
+        try:
+            import camera_calibration_parsers
+        except ImportError:
+            self.skipTest("package python3-camera-calibration-parsers is not installed")
+        self.render(sets=6)
+        self.calibrate("reference", "right", *self.BOARD_OPTIONS)
+        for camera in ("reference", "right"):
+            name, info = camera_calibration_parsers.readCalibration(str(self.folder / "out" / f"{camera}.yaml"))
+            self.assertEqual((name, info.width, info.height, info.distortion_model), (camera, *SIZE, "plumb_bob"))
+            for key, values in (("camera_matrix", info.K), ("rectification_matrix", info.R), ("projection_matrix", info.P),
+                                ("distortion_coefficients", info.D)):
+                numpy.testing.assert_allclose(values, self.info(camera)[key]["data"], rtol=0, atol=1e-9)
 
     def test_bad_input(self):
         self.render(sets=2)
@@ -91,7 +169,11 @@ class CalibrateRig(program_case.ProgramCase):
         for path in left + right:
             data = path.read_bytes()
             (self.folder / path.name.removesuffix(".gz")).write_bytes(gzip.decompress(data) if path.suffix == ".gz" else data)
-        answer = self.calibrate("left*.jpg", "right*.jpg", "--board", "9x6", "--square", 0.05)
+        self.check_real(self.calibrate("left*.jpg", "right*.jpg", "--board", "9x6", "--square", 0.05))
+        bag = self.record({"reference": "left*.jpg", "right": "right*.jpg"})
+        self.check_real(self.calibrate("--bag", bag, "--topics", "/a/reference/image_raw,/a/right/image_raw", "--board", "9x6", "--square", 0.05))
+
+    def check_real(self, answer):
         # 13 pairs; the size of the squares is not known, 5 cm sets the scale.
         self.assertGreaterEqual(answer["pairs"]["right"]["sets"], 12)
         self.assertLess(answer["pairs"]["right"]["rms_px"], 0.3)

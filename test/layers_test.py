@@ -20,7 +20,7 @@ AREAS = {
     "pipeline": ["base", "stereo", "scan", "mapping", "landmarks", "registration"],
 }
 ROS_HEADER = re.compile(r'#include [<"](ros|tf2|tf2_\w+|\w+_msgs|nodelet|pluginlib|rosbag|cv_bridge|image_transport|'
-                        r'message_filters|diagnostic_updater|std_srvs|XmlRpc)\b')
+                        r'message_filters|diagnostic_updater|dynamic_reconfigure|std_srvs|XmlRpc)\b')
 OWN_HEADER = re.compile(r'#include "cornerstone/(\w+)(/|\.h)')
 
 

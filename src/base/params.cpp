@@ -48,11 +48,29 @@ void ParamReader::field(const std::string& key, std::vector<std::string>& value)
 void ParamReader::group(const std::string& key, const std::function<void()>& members) {
   const YAML::Node inner = required(key);
   if (!inner.IsMap()) throw InputError(where_ + ": parameter '" + key + "' is not a map");
+  inside(inner, key, members);
+}
+
+std::size_t ParamReader::itemCount(const std::string& key, std::size_t) {
+  const YAML::Node list = required(key);
+  if (!list.IsSequence()) throw InputError(where_ + ": parameter '" + key + "' is not a list");
+  return list.size();
+}
+
+void ParamReader::item(const std::string& key, std::size_t index, const std::function<void()>& members) {
+  const YAML::Node inner = required(key)[index];
+  const std::string name = key + "[" + std::to_string(index) + "]";
+  if (!inner.IsMap()) throw InputError(where_ + ": parameter '" + name + "' is not a map");
+  inside(inner, name, members);
+}
+
+void ParamReader::inside(const YAML::Node& inner, const std::string& name,
+                         const std::function<void()>& members) {
   const YAML::Node outer_node = node_;
   const std::string outer_where = where_;
   const std::vector<std::string> outer_keys = read_keys_;
   node_.reset(inner);
-  where_ += "/" + key;
+  where_ += "/" + name;
   read_keys_.clear();
   members();
   requireAllRead();
@@ -69,13 +87,26 @@ void ParamReader::requireAllRead() const {
   }
 }
 
-void ParamWriter::group(const std::string& key, const std::function<void()>& members) {
+YAML::Node ParamWriter::written(const std::function<void()>& members) {
   const YAML::Node outer = node_;
   node_.reset(YAML::Node(YAML::NodeType::Map));
   members();
   const YAML::Node inner = node_;
   node_.reset(outer);
-  node_[key] = inner;
+  return inner;
+}
+
+void ParamWriter::group(const std::string& key, const std::function<void()>& members) {
+  node_[key] = written(members);
+}
+
+std::size_t ParamWriter::itemCount(const std::string& key, std::size_t count) {
+  node_[key] = YAML::Node(YAML::NodeType::Sequence);
+  return count;
+}
+
+void ParamWriter::item(const std::string& key, std::size_t, const std::function<void()>& members) {
+  node_[key].push_back(written(members));
 }
 
 }  // namespace cornerstone

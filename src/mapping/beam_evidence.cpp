@@ -26,29 +26,57 @@ double BeamEvidence::density(double range_m) const {
   return std::exp(-0.5 * off_m * off_m / (sigma * sigma)) / (std::sqrt(2 * M_PI) * mean_sigma);
 }
 
+namespace {
+
+// exp(-x^2 / 2) at x, x + h, x + 2 h, ...: two products a value.
+class GaussSteps {
+ public:
+  GaussSteps(double x, double h)
+      : value_(std::exp(-0.5 * x * x)), ratio_(std::exp(-h * (x + 0.5 * h))), change_(std::exp(-h * h)) {}
+  double next() {
+    const double value = value_;
+    value_ *= ratio_;
+    ratio_ *= change_;
+    return value;
+  }
+
+ private:
+  double value_, ratio_, change_;
+};
+
+}  // namespace
+
 void BeamEvidence::trace(const Eigen::Vector2d& origin_m, double heading_rad) {
   const Eigen::Vector2d direction(std::cos(heading_rad), std::sin(heading_rad));
   point_m_ = origin_m + beam_.range_m * direction;
-  transmission_.clear();
-  behind_.clear();
-  std::vector<float> cause;
-  double transmission = 1, total = 0;
   const double last_m = beam_.range_m + kReachSigmas * sigma_far_m_;
-  for (double range_m = start_m_ + step_m_ / 2; range_m < last_m; range_m += step_m_) {
-    const Cell cell = window_.geometry.cellAt(origin_m + range_m * direction);
-    const double occupied =
-        grid_.scale().occupied(window_.geometry.contains(cell) ? window_.at(cell) : EvidenceCell{0});
-    const double hazard = 1 - std::sqrt(1 - occupied);  // a step is half a cell
-    transmission_.push_back(static_cast<float>(transmission));
-    cause.push_back(static_cast<float>(hazard * transmission * density(range_m)));
-    total += cause.back();
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil((last_m - start_m_) / step_m_ - 0.5)));
+  transmission_.resize(count);
+  behind_.resize(count);
+  const double first_m = start_m_ + step_m_ / 2;
+  const auto near = std::min(
+      count, static_cast<std::size_t>(std::max(0.0, std::ceil((beam_.range_m - first_m) / step_m_))));
+  const double peak = 2 / (std::sqrt(2 * M_PI) * (sigma_near_m_ + sigma_far_m_));
+  GaussSteps gauss((first_m - beam_.range_m) / sigma_near_m_, step_m_ / sigma_near_m_);
+  const GridGeometry& at = window_.geometry;
+  const Eigen::Vector2d half_cell(0.5, 0.5), step_cells = (step_m_ / at.resolution_m) * direction;
+  Eigen::Vector2d cells = at.toCells(origin_m + first_m * direction) + half_cell;
+  double transmission = 1, total = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double range_m = first_m + static_cast<double>(i) * step_m_;
+    if (i == near) gauss = GaussSteps((range_m - beam_.range_m) / sigma_far_m_, step_m_ / sigma_far_m_);
+    // Rounded down: what is negative lies outside the window.
+    const Cell cell{static_cast<int>(cells.x() + 1) - 1, static_cast<int>(cells.y() + 1) - 1};
+    cells += step_cells;
+    const double hazard =
+        grid_.scale().hazard(window_.geometry.contains(cell) ? window_.at(cell) : EvidenceCell{0});
+    transmission_[i] = static_cast<float>(transmission);
+    behind_[i] = static_cast<float>(total);  // divided by all of it below
+    total += hazard * transmission * peak * gauss.next();
     transmission *= 1 - hazard;
   }
-  double before = 0;
-  for (const float part : cause) {
-    behind_.push_back(static_cast<float>(before / total));
-    before += part;
-  }
+  const auto share = static_cast<float>(1 / total);
+  for (float& before : behind_) before *= share;
   normaliser_ = total;
   const double mismatch = grid_.params().outlier_ratio / grid_.params().max_range_m;  // even along the beam
   outlier_ = mismatch / (mismatch + (1 - grid_.params().outlier_ratio) * total);

@@ -18,6 +18,7 @@ EvidenceScale::EvidenceScale(double prior_occupied) : prior_log_odds_(logit(prio
     const auto cell = static_cast<EvidenceCell>(value);
     const double p = sigmoid(logOddsOf(cell) + prior_log_odds_);
     occupied_[index(cell)] = p;
+    hazard_[index(cell)] = 1 - std::sqrt(1 - p);
     const double scaled = p < prior_occupied ? p / (2 * prior_occupied)
                                              : 0.5 + (p - prior_occupied) / (2 * (1 - prior_occupied));
     published_[index(cell)] = static_cast<float>(scaled);

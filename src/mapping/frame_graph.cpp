@@ -1,35 +1,14 @@
 #include "cornerstone/mapping/frame_graph.h"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "cornerstone/base/errors.h"
-#include "cornerstone/base/sqrt_information.h"
-#include "cornerstone/mapping/frame_graph_costs.h"
-#include "cornerstone/mapping/point_to_line_cost.h"
 
 namespace cornerstone {
 namespace {
 
 constexpr std::size_t kLooksKept = 10;  // a box that goes is free after 10 looks
-
-using PoseBlock = std::array<double, 3>;
-
-PoseBlock blockOf(const Pose2& pose) { return {pose.x_m, pose.y_m, pose.yaw_rad}; }
-Pose2 poseOf(const PoseBlock& block) { return {block[0], block[1], wrapAngle(block[2])}; }
-
-// Of what odometry does at random over a step; the systematic part is in the rates.
-Eigen::Vector3d stepSigmas(const Pose2& step, const OdometryNoise& noise) {
-  constexpr double kStill_m = 1e-3, kStill_rad = 3e-4;  // a robot that stands still jitters
-  const double way_m = step.translation().norm();
-  const double place_m = std::hypot(noise.noise_m_per_sqrt_m * std::sqrt(way_m), kStill_m);
-  const double yaw_rad2 = std::pow(noise.noise_rad_per_sqrt_m, 2) * way_m +
-                          std::pow(noise.noise_rad_per_sqrt_rad, 2) * std::abs(step.yaw_rad) +
-                          kStill_rad * kStill_rad;
-  return {place_m, place_m, std::sqrt(yaw_rad2)};
-}
 
 bool alike(const Pose2& a, const Pose2& b, const FrameGraphParams& params) {
   return (a.translation() - b.translation()).norm() <= params.match_distance_m &&
@@ -106,73 +85,27 @@ PoseEstimate FrameGraph::addFrame(const RangeScan& scan, const Pose2& odom_from_
   // Where the robot has gone on, the frame's own look is enough; where it stayed, the newest are.
   if (!frames_.empty() && frames_.back().looks.size() <= kLooksKept) frames_.back().looks.resize(1);
   KeyFrame frame = makeKeyFrame(scan, odom_from_base, prior.map_from_base, params_.piece);
-  const std::size_t first_match = matches_.size();
+  std::vector<PlacedMatch> placed_by;
   for (const std::size_t i : framesNearby(prior.map_from_base)) {
     const Pose2 expected = frames_[i].map_from_base.inverse() * prior.map_from_base;
     const auto match = matchFrames(frames_[i], frame, {expected, calibration_}, params_.match);
-    if (match) matches_.push_back({i, frames_.size(), *match});
+    if (!match) continue;
+    matches_.push_back({i, frames_.size(), *match});
+    placed_by.push_back({frames_[i].map_from_base, *match});
   }
-  const PoseEstimate placed = placeNewest(prior, first_match);
+  const PoseEstimate placed =
+      place({prior, calibration_, params_.place_weight, params_.loss_sigmas}, placed_by);
   frame.map_from_base = placed.map_from_base;
   if (!frames_.empty()) frame.step_as_fitted = frames_.back().map_from_base.inverse() * placed.map_from_base;
   frames_.push_back(std::move(frame));
   return placed;
 }
 
-PoseEstimate FrameGraph::placeNewest(const PoseEstimate& prior, std::size_t first_match) const {
-  if (first_match == matches_.size()) return prior;
-  PoseBlock pose = blockOf(prior.map_from_base);
-  const Eigen::Vector3d expected(pose[0], pose[1], pose[2]);
-  std::vector<PoseBlock> earlier;
-  earlier.reserve(matches_.size() - first_match);  // Ceres keeps pointers to these
-  std::array<double, 2> calibration = {calibration_.offset_per_m, calibration_.slope_per_m};
-  ceres::Problem problem;
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PosePriorCost, 3, 3>(
-                               new PosePriorCost(expected, sqrtInformation(prior.covariance))),
-                           nullptr, pose.data());
-  for (std::size_t i = first_match; i < matches_.size(); ++i) {
-    earlier.push_back(blockOf(frames_[matches_[i].earlier].map_from_base));
-    addMatch(problem, matches_[i].match, params_.place_weight,
-             {earlier.back().data(), pose.data(), calibration.data()});
-    problem.SetParameterBlockConstant(earlier.back().data());
-  }
-  problem.SetParameterBlockConstant(calibration.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 10;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-
-  ceres::Covariance::Options covariance_options;
-  covariance_options.algorithm_type = ceres::DENSE_SVD;
-  ceres::Covariance covariance(covariance_options);
-  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> of_pose;
-  const std::vector<const double*> blocks = {pose.data()};
-  if (!summary.IsSolutionUsable() || !covariance.Compute(blocks, &problem) ||
-      !covariance.GetCovarianceMatrix(blocks, of_pose.data()) || !poseOf(pose).isFinite())
-    return prior;
-  return {poseOf(pose), of_pose};
-}
-
-void FrameGraph::addStep(ceres::Problem& problem, const OdometryStepCost& cost, const Blocks& blocks) const {
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<OdometryStepCost, 3, 3, 3, 3>(new OdometryStepCost(cost)),
-      new ceres::CauchyLoss(params_.step_loss_sigmas), blocks.earlier, blocks.later, blocks.shared);
-}
-
-void FrameGraph::addMatch(ceres::Problem& problem, const FrameMatch& match, double weight,
-                          const Blocks& blocks) const {
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<FrameMatchCost, 5, 3, 3, 2>(new FrameMatchCost(match)),
-      new ceres::ScaledLoss(new ceres::CauchyLoss(params_.loss_sigmas), weight, ceres::TAKE_OWNERSHIP),
-      blocks.earlier, blocks.later, blocks.shared);
-}
-
 void FrameGraph::addLook(const RangeScan& scan, const Pose2& odom_from_base) {
   if (frames_.empty()) return;
   KeyFrame& frame = frames_.back();
-  frame.looks.push_back({scan, frame.odom_from_base.inverse() * odom_from_base});
+  frame.looks.push_back(
+      {std::make_shared<const RangeScan>(scan), frame.odom_from_base.inverse() * odom_from_base});
   if (frame.looks.size() > kLooksKept + 1) frame.looks.erase(frame.looks.begin() + 1);
 }
 
@@ -183,61 +116,27 @@ bool FrameGraph::solveDue() const {
   return frames_.size() >= solved_frames_ + std::max(anew, frames_.size() / kShare);
 }
 
-std::optional<GraphSolution> FrameGraph::solve() {
-  if (frames_.empty()) return std::nullopt;
+GraphProblem FrameGraph::problem() const {
+  GraphProblem problem;
+  problem.odometry = odometry_;
+  problem.weights = {params_.match_weight, params_.loss_sigmas, params_.step_loss_sigmas,
+                     params_.fitted_step_sigma_m, params_.fitted_step_sigma_rad};
+  problem.matches = matches_;
+  problem.rates = rates_;
+  problem.calibration = calibration_;
+  if (!frames_.empty()) problem.calibration_sigma_per_m = frames_.front().calibration_sigma_per_m;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    problem.map_from_base.push_back(frames_[i].map_from_base);
+    if (i > 0)
+      problem.steps.push_back(
+          {frames_[i - 1].odom_from_base.inverse() * frames_[i].odom_from_base, frames_[i].step_as_fitted});
+  }
+  return problem;
+}
+
+GraphProblem FrameGraph::beginSolution() {
   solved_frames_ = frames_.size();
-  std::vector<PoseBlock> poses;
-  for (const KeyFrame& frame : frames_) poses.push_back(blockOf(frame.map_from_base));
-  PoseBlock rates = {rates_(0), rates_(1), rates_(2)};
-  std::array<double, 2> calibration = {calibration_.offset_per_m, calibration_.slope_per_m};
-  const Eigen::Vector3d rate_sigmas(odometry_.scale_ratio, odometry_.yaw_drift_rad_per_m,
-                                    odometry_.turn_scale_ratio);
-  const double calibration_sigma = frames_.front().calibration_sigma_per_m;
-
-  ceres::Problem problem;
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<ZeroPriorCost<3>, 3, 3>(new ZeroPriorCost<3>(rate_sigmas)), nullptr,
-      rates.data());
-  PoseBlock no_rates = {0, 0, 0};
-  const double fitted_m = params_.fitted_step_sigma_m;
-  const Eigen::Vector3d fitted_sigmas(fitted_m, fitted_m, params_.fitted_step_sigma_rad);
-  for (std::size_t i = 1; i < frames_.size(); ++i) {
-    const Pose2 step = frames_[i - 1].odom_from_base.inverse() * frames_[i].odom_from_base;
-    addStep(problem, {step, stepSigmas(step, odometry_)},
-            {poses[i - 1].data(), poses[i].data(), rates.data()});
-    addStep(problem, {frames_[i].step_as_fitted, fitted_sigmas},
-            {poses[i - 1].data(), poses[i].data(), no_rates.data()});
-  }
-  if (problem.HasParameterBlock(no_rates.data())) problem.SetParameterBlockConstant(no_rates.data());
-  for (const Match& match : matches_)
-    addMatch(problem, match.match, params_.match_weight,
-             {poses[match.earlier].data(), poses[match.later].data(), calibration.data()});
-  problem.AddParameterBlock(calibration.data(), 2);
-  if (calibration_sigma > 0)
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ZeroPriorCost<2>, 2, 2>(
-                                 new ZeroPriorCost<2>(Eigen::Vector2d::Constant(calibration_sigma))),
-                             nullptr, calibration.data());
-  else
-    problem.SetParameterBlockConstant(calibration.data());
-  problem.AddParameterBlock(poses.front().data(), 3);
-  problem.SetParameterBlockConstant(poses.front().data());
-
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 10;  // from the last solution it takes three to five
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-
-  if (!summary.IsSolutionUsable()) return std::nullopt;
-  GraphSolution solution;
-  for (const PoseBlock& pose : poses) {
-    solution.map_from_base.push_back(poseOf(pose));
-    if (!solution.map_from_base.back().isFinite()) return std::nullopt;
-  }
-  solution.rates = {rates[0], rates[1], rates[2]};
-  solution.calibration = {calibration[0], calibration[1]};
-  return solution;
+  return problem();
 }
 
 void FrameGraph::adopt(const GraphSolution& solution) {

@@ -90,7 +90,7 @@ KeyFrame makeKeyFrame(const RangeScan& scan, const Pose2& odom_from_base, const 
     if (scan.calibration_sigma_per_m == 0) piece.by_calibration.setZero();
     frame.pieces.push_back(moved(scan.base_from_sensor, piece));
   }
-  frame.looks.push_back({scan, {}});
+  frame.looks.push_back({std::make_shared<const RangeScan>(scan), {}});
   return frame;
 }
 

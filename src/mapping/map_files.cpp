@@ -1,17 +1,22 @@
 #include "cornerstone/mapping/map_files.h"
 
 #include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/io/CFileOutputStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "cornerstone/base/errors.h"
+#include "cornerstone/mapping/evidence.h"
 #include "map_yaml.h"
 
 namespace cornerstone {
@@ -97,8 +102,13 @@ GridMap loadMrptMap(const std::string& path) {
   }
   const int cols = static_cast<int>(grid.getSizeX()), rows = static_cast<int>(grid.getSizeY());
   requireSize(cols, rows, path);
-  GridMap map{{static_cast<double>(grid.getResolution()), static_cast<double>(grid.getXMin()),
-               static_cast<double>(grid.getYMin()), cols, rows},
+  // MRPT keeps them as floats: 0.05 is 0.0500000007 there.
+  const double resolution_m = std::round(static_cast<double>(grid.getResolution()) * 1e6) * 1e-6;
+  requirePositive(resolution_m, path + ": resolution");
+  const auto onCell = [&](float value) {
+    return std::round(static_cast<double>(value) / resolution_m) * resolution_m;
+  };
+  GridMap map{{resolution_m, onCell(grid.getXMin()), onCell(grid.getYMin()), cols, rows},
               cv::Mat1f(rows, cols)};
   for (int row = 0; row < rows; ++row)
     for (int col = 0; col < cols; ++col) {
@@ -113,18 +123,13 @@ bool endsWith(const std::string& text, const std::string& end) {
 }
 
 // A reader never meets half a file: it is written beside its place and moved there.
-void writeWhole(const std::filesystem::path& path, const char* bytes, std::size_t size) {
+void writeWhole(const std::filesystem::path& path, const std::function<bool(const std::string&)>& write) {
   std::filesystem::path beside = path;
   beside += ".part" + std::to_string(::getpid());
   std::error_code failed;
-  {
-    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-    file.write(bytes, static_cast<std::streamsize>(size));
-    file.flush();
-    if (!file) {
-      std::filesystem::remove(beside, failed);
-      throw InputError(path.string() + ": cannot be written");
-    }
+  if (!write(beside.string())) {
+    std::filesystem::remove(beside, failed);
+    throw InputError(path.string() + ": cannot be written");
   }
   std::filesystem::rename(beside, path, failed);
   if (!failed) return;
@@ -133,18 +138,16 @@ void writeWhole(const std::filesystem::path& path, const char* bytes, std::size_
   throw InputError(path.string() + ": cannot be written: " + reason);
 }
 
-}  // namespace
-
-GridMap loadMap(const std::string& path) {
-  return endsWith(path, ".gridmap") || endsWith(path, ".gridmap.gz") ? loadMrptMap(path)
-                                                                     : loadServerMap(path);
+void writeBytes(const std::filesystem::path& path, const char* bytes, std::size_t size) {
+  writeWhole(path, [&](const std::string& beside) {
+    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+    file.write(bytes, static_cast<std::streamsize>(size));
+    file.close();
+    return !file.fail();
+  });
 }
 
-void saveMap(const GridMap& map, const std::string& yaml_path) {
-  if (!endsWith(yaml_path, ".yaml")) throw InputError(yaml_path + ": the name of a map must end in .yaml");
-  if (map.occupied.rows != map.geometry.rows || map.occupied.cols != map.geometry.cols)
-    throw std::logic_error("saveMap: geometry and cells differ in size");
-  if (map.occupied.empty()) throw InputError(yaml_path + ": the map to be saved is empty");
+void saveServerMap(const GridMap& map, const std::string& yaml_path) {
   cv::Mat4b image(map.occupied.size());
   for (int row = 0; row < map.geometry.rows; ++row)
     for (int col = 0; col < map.geometry.cols; ++col) {
@@ -156,9 +159,99 @@ void saveMap(const GridMap& map, const std::string& yaml_path) {
   image_path.replace_extension(".png");
   std::vector<uchar> png;
   cv::imencode(".png", image, png);
-  writeWhole(image_path, reinterpret_cast<const char*>(png.data()), png.size());
+  writeBytes(image_path, reinterpret_cast<const char*>(png.data()), png.size());
   const std::string text = mapYamlText(image_path.filename().string(), map.geometry);
-  writeWhole(yaml_path, text.data(), text.size());
+  writeBytes(yaml_path, text.data(), text.size());
+}
+
+using MrptGrid = mrpt::maps::COccupancyGridMap2D;
+
+// MRPT's log-odds of free, held off 0 for cells that were seen. (MRPT's own p2l is a table of 255 entries:
+// what it wrote would not come back.)
+MrptGrid::cellType mrptCellOf(float occupied) {
+  if (occupied == kUnseen) return 0;
+  constexpr double kSure = 1e-4;  // as sure as a cell can say
+  const double p = std::clamp(static_cast<double>(occupied), kSure, 1 - kSure);
+  const EvidenceCell cell = EvidenceScale::cellOf(std::log(p / (1 - p)));
+  if (cell != 0) return cell;
+  return static_cast<EvidenceCell>(occupied > kUnseen ? -1 : 1);
+}
+
+void saveMrptMap(const GridMap& map, const std::string& path) {
+  const GridGeometry& from = map.geometry;
+  const auto resolution_m = static_cast<float>(from.resolution_m);
+  const auto edge = [&](double origin_m, int cells) {
+    return static_cast<float>((std::round(origin_m / from.resolution_m) + cells) * from.resolution_m);
+  };
+  MrptGrid grid(edge(from.origin_x_m, 0), edge(from.origin_x_m, from.cols), edge(from.origin_y_m, 0),
+                edge(from.origin_y_m, from.rows), resolution_m);
+  if (static_cast<int>(grid.getSizeX()) != from.cols || static_cast<int>(grid.getSizeY()) != from.rows)
+    throw std::logic_error("saveMap: MRPT made a grid of another size");
+  for (int row = 0; row < from.rows; ++row)
+    std::transform(map.occupied[row], map.occupied[row] + from.cols, grid.getRow(row), mrptCellOf);
+  const auto writeTo = [&](auto& file, const std::string& beside) {
+    if (!file.open(beside)) return false;
+    auto archive = mrpt::serialization::archiveFrom(file);
+    archive << grid;
+    file.close();
+    return true;
+  };
+  writeWhole(path, [&](const std::string& beside) {
+    mrpt::io::CFileGZOutputStream packed;
+    mrpt::io::CFileOutputStream plain;
+    try {
+      return endsWith(path, ".gz") ? writeTo(packed, beside) : writeTo(plain, beside);
+    } catch (const std::exception&) {
+      return false;
+    }
+  });
+}
+
+bool isMrptPath(const std::string& path) {
+  return endsWith(path, ".gridmap") || endsWith(path, ".gridmap.gz");
+}
+
+}  // namespace
+
+GridMap loadMap(const std::string& path) {
+  return isMrptPath(path) ? loadMrptMap(path) : loadServerMap(path);
+}
+
+void saveMap(const GridMap& map, const std::string& path) {
+  if (!endsWith(path, ".yaml") && !isMrptPath(path))
+    throw InputError(path + ": the name of a map must end in .yaml, .gridmap or .gridmap.gz");
+  if (map.occupied.rows != map.geometry.rows || map.occupied.cols != map.geometry.cols)
+    throw std::logic_error("saveMap: geometry and cells differ in size");
+  if (map.occupied.empty()) throw InputError(path + ": the map to be saved is empty");
+  isMrptPath(path) ? saveMrptMap(map, path) : saveServerMap(map, path);
+}
+
+namespace {
+
+std::string levelPath(const std::string& path, const std::vector<std::string>& names, std::size_t level) {
+  const std::string whole = endsWith(path, ".yaml") || isMrptPath(path) ? path : path + ".yaml";
+  if (level == 0) return whole;
+  const std::string ending = endsWith(whole, ".gz") ? ".gridmap.gz"
+                             : isMrptPath(whole)    ? ".gridmap"
+                                                    : ".yaml";
+  return whole.substr(0, whole.size() - ending.size()) + "_" + names.at(level) + ending;
+}
+
+}  // namespace
+
+void saveLevels(const std::vector<GridMap>& levels, const std::string& path,
+                const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    if (i == 0 || !levels[i].occupied.empty()) saveMap(levels[i], levelPath(path, names, i));
+}
+
+std::vector<GridMap> loadLevels(const std::string& path, const std::vector<std::string>& names) {
+  std::vector<GridMap> levels;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string file = levelPath(path, names, i);
+    levels.push_back(i == 0 || std::filesystem::exists(file) ? loadMap(file) : GridMap{});
+  }
+  return levels;
 }
 
 }  // namespace cornerstone

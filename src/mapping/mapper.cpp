@@ -38,8 +38,11 @@ void requireSane(const Pose2& odom_from_base) {
 
 }  // namespace
 
-Mapper::Mapper(const MapperParams& params)
-    : params_(params), grid_(params.grid), filter_(params.odometry), graph_(params.graph, params.odometry) {
+Mapper::Mapper(const MapperParams& params, std::size_t levels)
+    : params_(params),
+      local_maps_{LocalMap(params.grid, levels)},
+      filter_(params.odometry),
+      graph_(params.graph, params.odometry) {
   requireValid(params.fit);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
@@ -69,7 +72,7 @@ double Mapper::newShare(const RangeScan& scan) const {
   if (ranges_m.empty()) return 1;
   const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
   std::nth_element(ranges_m.begin(), middle, ranges_m.end());
-  return grid_.newShare(*middle, motion());
+  return grid().newShare(*middle, motion());
 }
 
 MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
@@ -77,7 +80,7 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   predict(odom_from_base);
   const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
-  if (params_.fit_scans) fit = fitScan(scan, grid_, {filter_.pose(), newShare(scan)}, params_.fit);
+  if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
   if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
   contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
 
@@ -88,7 +91,7 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
   if (remembers) remember(raw, odom_from_base);
   if (insert) {
-    grid_.insert(scan, filter_.pose().map_from_base, motion());
+    current().insert(scan, filter_.pose().map_from_base, motion());
     last_inserted_ = filter_.pose().map_from_base;
   }
   if (remembers) straighten();
@@ -104,26 +107,19 @@ void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
   }
 }
 
+// What the thread beside has done is taken up after a fixed count of scans, so that the same scans always
+// make the same map. It needs some milliseconds a frame in all, and is waited for where it is slower.
 void Mapper::straighten() {
   if (redraw_) {
     redraw();
+  } else if (beside_.valid()) {
+    if (--scans_to_take_up_ <= 0) redraw_ = beside_.get();
   } else if (graph_.solveDue()) {
-    std::optional<GraphSolution> solution = graph_.solve();
-    if (solution && movesTheMap(*solution)) redraw_.emplace(params_.grid, std::move(*solution));
+    constexpr int kLeastScans = 5, kFramesPerScan = 30;
+    scans_to_take_up_ = kLeastScans + static_cast<int>(graph_.frames().size()) / kFramesPerScan;
+    beside_ = startRedraw(graph_, LocalMap(params_.grid, current().levelCount()),
+                          {params_.graph.redraw_shift_m, params_.graph.match_distance_m});
   }
-}
-
-bool Mapper::movesTheMap(const GraphSolution& solution) const {
-  const double limit_m = params_.graph.redraw_shift_m;
-  const ScanCalibration &before = graph_.calibration(), &now = solution.calibration;
-  const Eigen::Vector2d change(now.offset_per_m - before.offset_per_m, now.slope_per_m - before.slope_per_m);
-  const double far_m = params_.graph.match_distance_m;
-  if (change.norm() * far_m * far_m > limit_m) return true;
-  for (std::size_t i = 0; i < solution.map_from_base.size(); ++i) {
-    const Pose2 moved = graph_.frames()[i].map_from_base.inverse() * solution.map_from_base[i];
-    if (moved.translation().norm() + far_m * std::abs(moved.yaw_rad) > limit_m) return true;
-  }
-  return false;
 }
 
 void Mapper::redraw() {
@@ -134,16 +130,17 @@ void Mapper::redraw() {
   filter_.moveBy(correction, solution.rates);
   last_inserted_ = correction * *last_inserted_;
   graph_.adopt(solution);
-  grid_.becomeRedrawn(redraw_->takeGrid());
+  current().becomeRedrawn(redraw_->takeMap());
   redraw_.reset();
   ++redraws_;
 }
 
 void Mapper::reset() {
-  grid_.clear();
+  current().clear();
   filter_ = OdometryFilter(params_.odometry);
   graph_ = FrameGraph(params_.graph, params_.odometry);
   redraw_.reset();
+  beside_ = {};
   redraws_ = 0;
   loaded_ = false;
   map_from_odom_ = {};
@@ -154,12 +151,15 @@ void Mapper::reset() {
   ++epoch_;
 }
 
-void Mapper::load(const GridMap& map, const Pose2& map_from_base) {
+void Mapper::load(const std::vector<GridMap>& levels, const Pose2& map_from_base) {
   if (!map_from_base.isFinite()) throw InputError("map to load: the robot's pose in it is not finite");
-  OccupancyGrid loaded(params_.grid);
-  loaded.load(map);
+  if (levels.size() > current().levelCount())
+    throw InputError("map to load: it has more levels than this map");
+  LocalMap loaded(params_.grid, current().levelCount());
+  for (std::size_t level = 0; level < levels.size(); ++level)
+    if (!levels[level].occupied.empty()) loaded.load(level, levels[level]);
   reset();
-  grid_ = std::move(loaded);
+  current() = std::move(loaded);
   start_ = map_from_base;
   loaded_ = true;
 }

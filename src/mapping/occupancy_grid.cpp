@@ -121,6 +121,8 @@ void OccupancyGrid::becomeRedrawn(OccupancyGrid&& redrawn) {
   for (const auto& [index, tile] : tiles_)
     redrawn.tileFor(index);  // what is no longer seen goes out as unseen
   tiles_ = std::move(redrawn.tiles_);
+  low_ = redrawn.low_;
+  high_ = redrawn.high_;
   ++version_;
   for (auto& [index, tile] : tiles_) tile.version = version_;
 }
@@ -144,52 +146,45 @@ void OccupancyGrid::load(const GridMap& map) {
   writeWindow(window);
 }
 
-GridGeometry OccupancyGrid::tileGeometry(TileIndex index) const {
-  const Cell first = firstCellOf(index);
+GridGeometry OccupancyGrid::geometryOf(TileIndex low, TileIndex high) const {
+  const Cell first = firstCellOf(low);
   return {params_.resolution_m, first.col * params_.resolution_m, first.row * params_.resolution_m,
-          kTileCells, kTileCells};
+          (high.col - low.col + 1) * kTileCells, (high.row - low.row + 1) * kTileCells};
 }
 
 OccupancyGrid::Tile& OccupancyGrid::tileFor(TileIndex index) {
   const auto found = tiles_.find(index);
   if (found != tiles_.end()) return found->second;
-  Tile& tile = tiles_[index];
-  const GridGeometry at = tileGeometry(index);
-  const double size_m = kTileCells * at.resolution_m;
-  tile.cells.setSize(static_cast<float>(at.origin_x_m), static_cast<float>(at.origin_x_m + size_m),
-                     static_cast<float>(at.origin_y_m), static_cast<float>(at.origin_y_m + size_m),
-                     static_cast<float>(at.resolution_m));
-  if (tile.cells.getSizeX() != kTileCells || tile.cells.getSizeY() != kTileCells)
-    throw std::logic_error("OccupancyGrid: MRPT made a tile of another size");
-  for (int row = 0; row < kTileCells; ++row) std::fill_n(tile.cells.getRow(row), kTileCells, EvidenceCell{0});
-  return tile;
+  low_ = tiles_.empty() ? index : TileIndex{std::min(low_.col, index.col), std::min(low_.row, index.row)};
+  high_ = tiles_.empty() ? index : TileIndex{std::max(high_.col, index.col), std::max(high_.row, index.row)};
+  return tiles_[index];
 }
 
 GridGeometry OccupancyGrid::geometry() const {
   if (tiles_.empty()) return {params_.resolution_m, 0, 0, 0, 0};
-  TileIndex low = tiles_.begin()->first, high = low;
-  for (const auto& [index, tile] : tiles_) {
-    low = {std::min(low.col, index.col), std::min(low.row, index.row)};
-    high = {std::max(high.col, index.col), std::max(high.row, index.row)};
-  }
-  GridGeometry all = tileGeometry(low);
-  all.cols = (high.col - low.col + 1) * kTileCells;
-  all.rows = (high.row - low.row + 1) * kTileCells;
-  return all;
+  return geometryOf(low_, high_);
 }
 
 GridMap OccupancyGrid::snapshot() const {
-  GridMap map{geometry(), {}};
+  if (tiles_.empty()) return {geometry(), cv::Mat1f()};
+  return tiles(low_, high_);
+}
+
+GridMap OccupancyGrid::tile(TileIndex index) const { return tiles(index, index); }
+
+GridMap OccupancyGrid::tiles(TileIndex low, TileIndex high) const {
+  GridMap map{geometryOf(low, high), {}};
   map.occupied = cv::Mat1f(map.geometry.rows, map.geometry.cols, kUnseen);
-  if (tiles_.empty()) return map;
-  const Cell first{static_cast<int>(std::lround(map.geometry.origin_x_m / params_.resolution_m)),
-                   static_cast<int>(std::lround(map.geometry.origin_y_m / params_.resolution_m))};
-  for (const auto& [index, tile] : tiles_) {
-    const Cell at = firstCellOf(index);
-    for (int row = 0; row < kTileCells; ++row) {
-      const EvidenceCell* cells = tile.cells.getRow(row);
-      float* out = map.occupied.ptr<float>(at.row - first.row + row) + (at.col - first.col);
-      for (int col = 0; col < kTileCells; ++col) out[col] = scale_.published(cells[col]);
+  const Cell first = firstCellOf(low);
+  for (int tile_row = low.row; tile_row <= high.row; ++tile_row) {
+    const auto end = tiles_.upper_bound({high.col, tile_row});
+    for (auto found = tiles_.lower_bound({low.col, tile_row}); found != end; ++found) {
+      const Cell at = firstCellOf(found->first);
+      for (int row = 0; row < kTileCells; ++row) {
+        const EvidenceCell* cells = found->second.at({0, row});
+        float* out = map.occupied.ptr<float>(at.row - first.row + row) + (at.col - first.col);
+        for (int col = 0; col < kTileCells; ++col) out[col] = scale_.published(cells[col]);
+      }
     }
   }
   return map;
@@ -200,16 +195,6 @@ std::vector<TileIndex> OccupancyGrid::changedTiles(std::uint64_t version) const 
   for (const auto& [index, tile] : tiles_)
     if (tile.version > version) changed.push_back(index);
   return changed;
-}
-
-GridMap OccupancyGrid::tile(TileIndex index) const {
-  GridMap map{tileGeometry(index), cv::Mat1f(kTileCells, kTileCells, kUnseen)};
-  const auto found = tiles_.find(index);
-  if (found == tiles_.end()) return map;
-  for (int row = 0; row < kTileCells; ++row)
-    for (int col = 0; col < kTileCells; ++col)
-      map.occupied(row, col) = scale_.published(found->second.cells.getRow(row)[col]);
-  return map;
 }
 
 CellWindow OccupancyGrid::readWindow(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m) const {
@@ -225,8 +210,7 @@ CellWindow OccupancyGrid::readWindow(const Eigen::Vector2d& low_m, const Eigen::
       EvidenceCell{0});
   forEachRowPart(window, [&](TileIndex index, Cell inside, Cell at, int count) {
     const auto found = tiles_.find(index);
-    if (found != tiles_.end())
-      std::copy_n(found->second.cells.getRow(inside.row) + inside.col, count, &window.at(at));
+    if (found != tiles_.end()) std::copy_n(found->second.at(inside), count, &window.at(at));
   });
   return window;
 }
@@ -238,7 +222,7 @@ void OccupancyGrid::writeWindow(const CellWindow& window) {
     const bool known = found != tiles_.end();
     if (!known && std::all_of(cells, cells + count, [](EvidenceCell cell) { return cell == 0; })) return;
     Tile& tile = known ? found->second : tileFor(index);
-    EvidenceCell* old_cells = tile.cells.getRow(inside.row) + inside.col;
+    EvidenceCell* old_cells = tile.at(inside);
     if (std::equal(cells, cells + count, old_cells)) return;
     std::copy_n(cells, count, old_cells);
     tile.version = version_;
@@ -255,7 +239,7 @@ void OccupancyGrid::addHit(const SurfaceHit& hit) {
   SurfacePoint& point = tile.surface[static_cast<std::size_t>((hit.cell.row - first.row) * kTileCells +
                                                               hit.cell.col - first.col)];
   // What is being cleared is forgotten, so that a thing put there later has its own place.
-  if (EvidenceScale::logOddsOf(tile.cells.getRow(hit.cell.row - first.row)[hit.cell.col - first.col]) < 0)
+  if (EvidenceScale::logOddsOf(*tile.at({hit.cell.col - first.col, hit.cell.row - first.row})) < 0)
     point.weight = 0;
   const double gain = hit.weight / (hit.weight + static_cast<double>(point.weight));
   point.x_m += static_cast<float>(gain * (hit.point_m.x() - static_cast<double>(point.x_m)));

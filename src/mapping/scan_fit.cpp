@@ -1,12 +1,10 @@
 #include "cornerstone/mapping/scan_fit.h"
 
-#include <ceres/ceres.h>
-
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 
 #include "cornerstone/base/errors.h"
-#include "cornerstone/base/sqrt_information.h"
 #include "cornerstone/mapping/point_to_line_cost.h"
 #include "surface_lines.h"
 
@@ -72,42 +70,49 @@ double whitened(const LineMatch& match, const Pose2& pose) {
   return match.normal.dot(pose * match.point_in_base_m - match.surface_m) / match.sigma_m;
 }
 
-// Neighbouring beams share their errors: together `correlated` of them are one measurement.
-Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const PoseEstimate& prior,
-            const ScanFitParams& params, double correlated) {
-  double pose[3] = {start.x_m, start.y_m, start.yaw_rad};
-  const Pose2& mean = prior.map_from_base;
-  const Eigen::Vector3d expected(mean.x_m, mean.y_m, start.yaw_rad + wrapAngle(mean.yaw_rad - start.yaw_rad));
-  ceres::Problem problem;
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PosePriorCost, 3, 3>(
-                               new PosePriorCost(expected, sqrtInformation(prior.covariance))),
-                           nullptr, pose);
-  for (const LineMatch& match : matches)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PointToLineCost, 1, 3>(new PointToLineCost(match)),
-        new ceres::ScaledLoss(new ceres::CauchyLoss(params.loss_sigmas), 1 / correlated,
-                              ceres::TAKE_OWNERSHIP),
-        pose);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 4;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return {pose[0], pose[1], wrapAngle(pose[2])};
-}
-
-Eigen::Matrix3d informationAt(const std::vector<LineMatch>& matches, const Pose2& pose, double correlated,
-                              double loss_sigmas) {
+// J' W J and J' W r of the distances to the lines; Cauchy's loss by weights. Neighbouring beams share their
+// errors: together `correlated` of them are one measurement.
+struct NormalEquations {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
+NormalEquations equationsAt(const std::vector<LineMatch>& matches, const Pose2& pose, double correlated,
+                            double loss_sigmas) {
+  NormalEquations sums;
+  const Eigen::Matrix2d rotation = pose.rotation();
   for (const LineMatch& match : matches) {
-    const Eigen::Vector2d arm_m = pose.rotation() * match.point_in_base_m;
+    const Eigen::Vector2d arm_m = rotation * match.point_in_base_m;
+    const double residual_m = match.normal.dot(arm_m + pose.translation() - match.surface_m);
+    const double sigmas = residual_m / (match.sigma_m * loss_sigmas);
+    const double weight = 1 / ((1 + sigmas * sigmas) * match.sigma_m * match.sigma_m * correlated);
     const Eigen::Vector3d row(match.normal.x(), match.normal.y(),
                               match.normal.y() * arm_m.x() - match.normal.x() * arm_m.y());
-    const double loss = 1 / (1 + std::pow(whitened(match, pose) / loss_sigmas, 2));  // of Cauchy
-    information += loss / (match.sigma_m * match.sigma_m * correlated) * row * row.transpose();
+    sums.information += weight * row * row.transpose();
+    sums.gradient += weight * residual_m * row;
   }
-  return information;
+  return sums;
+}
+
+Eigen::Vector3d differenceOf(const Pose2& pose, const Pose2& from) {
+  return {pose.x_m - from.x_m, pose.y_m - from.y_m, wrapAngle(pose.yaw_rad - from.yaw_rad)};
+}
+
+// Gauss-Newton with the weights of the pose before: three steps bring it as near as pairing anew can use.
+Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const PoseEstimate& prior,
+            const ScanFitParams& params, double correlated) {
+  constexpr int kSteps = 3;
+  const Eigen::Matrix3d prior_information = prior.covariance.inverse();
+  Pose2 pose = start;
+  for (int i = 0; i < kSteps; ++i) {
+    const NormalEquations sums = equationsAt(matches, pose, correlated, params.loss_sigmas);
+    const Eigen::Vector3d step =
+        -(sums.information + prior_information)
+             .ldlt()
+             .solve(sums.gradient + prior_information * differenceOf(pose, prior.map_from_base));
+    pose = {pose.x_m + step.x(), pose.y_m + step.y(), wrapAngle(pose.yaw_rad + step.z())};
+  }
+  return pose;
 }
 
 // The solution takes the scan at its word, L for its information. What one look cannot know (F) and what it
@@ -125,8 +130,7 @@ PoseEstimate tempered(const Pose2& solution, const Eigen::Matrix3d& information,
   const Eigen::Matrix3d temper =
       start.new_share * (Eigen::Matrix3d::Identity() + information * floor).inverse();
   const Pose2& from = start.prior.map_from_base;
-  const Eigen::Vector3d step(solution.x_m - from.x_m, solution.y_m - from.y_m,
-                             wrapAngle(solution.yaw_rad - from.yaw_rad));
+  const Eigen::Vector3d step = differenceOf(solution, from);
   const Eigen::Matrix3d covariance = (temper * information + prior).inverse();
   const Eigen::Vector3d allowed = covariance * temper * (information + prior) * step;
   return {{from.x_m + allowed.x(), from.y_m + allowed.y(), wrapAngle(from.yaw_rad + allowed.z())},
@@ -193,7 +197,8 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitS
   fit.agreeing_share = agreeingShare(matches, pose);
   fit.state = fit.agreeing_share < params.min_agreeing_share ? FitState::kContradicts : FitState::kFitted;
   if (fit.state == FitState::kFitted)
-    fit.pose = tempered(pose, informationAt(matches, pose, correlated, params.loss_sigmas), start, params);
+    fit.pose =
+        tempered(pose, equationsAt(matches, pose, correlated, params.loss_sigmas).information, start, params);
   return fit;
 }
 

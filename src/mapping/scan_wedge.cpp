@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace cornerstone {
 namespace {
@@ -14,6 +16,26 @@ constexpr double kSmallestProbability = 1e-9;
 double logit(double probability) {
   const double p = std::clamp(probability, kSmallestProbability, 1 - kSmallestProbability);
   return std::log(p / (1 - p));
+}
+
+// Within 2e-6 rad: std::atan2 for every cell would take most of the time of a scan. Polynomial of Hastings,
+// Approximations for Digital Computers (1955), sheet 13.
+float fastAtan2(float y, float x) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float larger = std::max(ax, ay), z = larger > 0 ? std::min(ax, ay) / larger : 0, z2 = z * z;
+  float angle =
+      ((((-0.0117212F * z2 + 0.05265332F) * z2 - 0.11643287F) * z2 + 0.19354346F) * z2 - 0.33262347F) * z2 +
+      0.99997726F;
+  angle *= z;
+  if (ay > ax) angle = static_cast<float>(M_PI / 2) - angle;
+  if (x < 0) angle = static_cast<float>(M_PI) - angle;
+  return y < 0 ? -angle : angle;
+}
+
+// std::floor, which is a call of a library function on processors without SSE 4.1.
+int floorOf(double value) {
+  const int towards_zero = static_cast<int>(value);
+  return towards_zero - (value < towards_zero);
 }
 
 double reachOf(const Beam& beam, double max_range_m) {
@@ -41,7 +63,11 @@ CellWindow windowOf(const RangeScan& scan, const Pose2& map_from_sensor, const O
 }  // namespace
 
 ScanWedge::ScanWedge(const RangeScan& scan, const Pose2& map_from_sensor, const OccupancyGrid& grid)
-    : grid_(grid), map_from_sensor_(map_from_sensor), window_(windowOf(scan, map_from_sensor, grid)) {
+    : grid_(grid),
+      map_from_sensor_(map_from_sensor),
+      window_(windowOf(scan, map_from_sensor, grid)),
+      emptiest_(EvidenceScale::cellOf(grid.params().min_log_odds)) {
+  beams_.reserve(scan.beams.size());
   for (const Beam& beam : scan.beams) {
     if (!beam.hit) continue;
     beams_.emplace_back(beam, window_, grid);
@@ -69,37 +95,66 @@ void ScanWedge::makeBearingTable(const RangeScan& scan) {
       beam_at_[i] = index;
     ++index;
   }
+  // A beam that is surely no mismatch takes the whole free step from every cell before its interval: with
+  // outlier o, logit(o P) - logit(P) <= log o.
+  const double surely = std::exp(-grid_.params().free_step);
+  std::vector<float> free_m, end_m;
+  for (const int at : beam_at_) {
+    const BeamEvidence* beam = at < 0 ? nullptr : &beams_[static_cast<std::size_t>(at)];
+    const double before_m =
+        beam && beam->outlier() <= surely ? std::min(beam->start_m(), beam->clear_m()) : 0;
+    free_m.push_back(beam ? static_cast<float>(before_m) : std::numeric_limits<float>::infinity());
+    end_m.push_back(beam ? static_cast<float>(-beam->end_m()) : std::numeric_limits<float>::infinity());
+  }
+  free_up_to_m_ = RangeMinimum(std::move(free_m));
+  minus_end_m_ = RangeMinimum(std::move(end_m));
 }
 
 void ScanWedge::apply(const LookMotion& motion) {
-  const Eigen::Vector2d sensor_m = map_from_sensor_.translation();
-  for (int row = 0; row < window_.geometry.rows; ++row)
-    for (int col = 0; col < window_.geometry.cols; ++col) {
-      const Eigen::Vector2d from_sensor_m = window_.geometry.centreOf({col, row}) - sensor_m;
-      if (from_sensor_m.squaredNorm() <= reach_m_ * reach_m_) updateCell({col, row}, from_sensor_m, motion);
+  if (beams_.empty()) return;
+  const GridGeometry& at = window_.geometry;
+  const double all_free_m = static_cast<double>(free_up_to_m_.of(0, static_cast<int>(beam_at_.size()) - 1));
+  const Eigen::Vector2d ahead = map_from_sensor_.rotation().col(0), left = map_from_sensor_.rotation().col(1);
+  for (int row = 0; row < at.rows; ++row) {
+    Eigen::Vector2d from_sensor_m = at.centreOf({0, row}) - map_from_sensor_.translation();
+    EvidenceCell* cells = &window_.at({0, row});
+    for (int col = 0; col < at.cols; ++col, from_sensor_m.x() += at.resolution_m) {
+      const double squared_m2 = from_sensor_m.squaredNorm();
+      if (squared_m2 > reach_m_ * reach_m_) continue;
+      if (squared_m2 < all_free_m * all_free_m && cells[col] == emptiest_) continue;
+      const auto x_m = static_cast<float>(ahead.dot(from_sensor_m)),
+                 y_m = static_cast<float>(left.dot(from_sensor_m));
+      const Sector sector = sectorOf(std::sqrt(squared_m2), static_cast<double>(fastAtan2(y_m, x_m)));
+      if (sector.first <= sector.last) updateCell({col, row}, cells[col], sector, motion);
     }
+  }
 }
 
-ScanWedge::Look ScanWedge::lookAt(double range_m, double bearing_rad, double occupied) const {
+// The part of the table that a cell covers; empty where it is not wholly in view.
+ScanWedge::Sector ScanWedge::sectorOf(double range_m, double bearing_rad) const {
   const double half_rad = 0.5 * grid_.params().resolution_m / std::max(range_m, grid_.params().resolution_m);
-  const double size = static_cast<double>(beam_at_.size());
-  double first = std::floor((bearing_rad - half_rad - table_start_rad_) / table_step_rad_);
-  double last = std::floor((bearing_rad + half_rad - table_start_rad_) / table_step_rad_);
+  const double centre = (bearing_rad - table_start_rad_) / table_step_rad_, half = half_rad / table_step_rad_;
+  const int size = static_cast<int>(beam_at_.size());
+  int first = floorOf(centre - half), last = floorOf(centre + half);
+  if (last < 0 || first >= size) return {};
+  if (last - first <= 2) first = last = floorOf(centre);
+  if (first < 0 || last >= size) return {};
+  return {first, last, range_m};
+}
+
+ScanWedge::Look ScanWedge::lookAt(const Sector& sector, double occupied) const {
   Look look;
-  if (last < 0 || first >= size) return look;
-  if (last - first <= 2) first = last = std::floor((bearing_rad - table_start_rad_) / table_step_rad_);
-  if (first < 0 || last >= size) return look;  // at the edge of the view: not wholly seen
-  const int stride = std::max(1, static_cast<int>((last - first) / kMaxBeamsPerCell));
+  const int stride = std::max(1, (sector.last - sector.first) / kMaxBeamsPerCell);
   int previous = -1;
-  for (auto i = static_cast<std::size_t>(first); i <= static_cast<std::size_t>(last);
-       i += static_cast<std::size_t>(stride)) {
-    if (beam_at_[i] < 0 || beam_at_[i] == previous) continue;
-    previous = beam_at_[i];
-    const BeamEvidence& beam = beams_[static_cast<std::size_t>(previous)];
-    const bool before = range_m < beam.start_m();
-    if (range_m > beam.end_m() || (range_m > beam.clear_m() && before)) continue;
-    const double cause = before ? 0 : beam.causeOf(range_m, occupied);
-    look.posterior += before ? beam.outlier() * occupied : beam.posteriorOf(range_m, occupied);
+  for (int i = sector.first; i <= sector.last; i += stride) {
+    const int index = beam_at_[static_cast<std::size_t>(i)];
+    if (index < 0 || index == previous) continue;
+    previous = index;
+    const BeamEvidence& beam = beams_[static_cast<std::size_t>(index)];
+    const bool before = sector.range_m < beam.start_m();
+    if (sector.range_m > beam.end_m() || (sector.range_m > beam.clear_m() && before)) continue;
+    const double cause = before ? 0 : beam.causeOf(sector.range_m, occupied);
+    look.posterior += before ? beam.outlier() * occupied : beam.posteriorOf(sector.range_m, occupied);
     ++look.beams;
     if (cause <= look.cause) continue;
     look.cause = cause;
@@ -108,16 +163,22 @@ ScanWedge::Look ScanWedge::lookAt(double range_m, double bearing_rad, double occ
   return look;
 }
 
-void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, const LookMotion& motion) {
-  const double bearing_rad =
-      wrapAngle(std::atan2(from_sensor_m.y(), from_sensor_m.x()) - map_from_sensor_.yaw_rad);
-  const double range_m = from_sensor_m.norm();
-  EvidenceCell& evidence = window_.at(cell);
+void ScanWedge::updateCell(Cell cell, EvidenceCell& evidence, const Sector& sector,
+                           const LookMotion& motion) {
+  // Most cells lie before all of their beams' intervals, or behind them.
+  const double free_m = static_cast<double>(free_up_to_m_.of(sector.first, sector.last));
+  if (std::isinf(free_m) || sector.range_m > -static_cast<double>(minus_end_m_.of(sector.first, sector.last)))
+    return;
+  if (sector.range_m < free_m) {
+    if (evidence != emptiest_)
+      evidence = updated(evidence, -grid_.params().free_step, grid_.newShare(sector.range_m, motion));
+    return;
+  }
   const double occupied = grid_.scale().occupied(evidence);
-  const Look look = lookAt(range_m, bearing_rad, occupied);
+  const Look look = lookAt(sector, occupied);
   if (look.beams == 0) return;
   const double change = logit(look.posterior / look.beams) - logit(occupied);
-  const double new_share = grid_.newShare(range_m, motion);
+  const double new_share = grid_.newShare(sector.range_m, motion);
   evidence = updated(evidence, change, new_share);
   if (look.cause < kMinHitCause) return;
   const double sigma_m = look.beam->sigma_m();
@@ -126,16 +187,22 @@ void ScanWedge::updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, cons
                    new_share * look.cause / (sigma_m * sigma_m)});
 }
 
+// What confirms the cell counts by how new the look is. A look that tips the cell without being wholly new
+// only leaves it contested, one step on the new side; the next look decides in full: a thing that came is
+// there after two looks of a robot that stands, and one that went does not linger between.
 EvidenceCell ScanWedge::updated(EvidenceCell cell, double change, double new_share) const {
   const GridParams& params = grid_.params();
   const double before = EvidenceScale::logOddsOf(cell);
-  const bool confirms = change * before >= 0;
+  const bool contested = cell == 1 || cell == -1;
+  const bool confirms = change * before >= 0 && !contested;
   const double step =
       std::clamp(change, -params.free_step, params.occupied_step) * (confirms ? new_share : 1);
   const EvidenceCell after =
       EvidenceScale::cellOf(std::clamp(before + step, params.min_log_odds, params.max_log_odds));
+  const bool tips = cell != 0 && !contested && (cell > 0) != (after > 0);
   // 0 is kept for "never seen": evidence that cancels stays one step on the side of the last look.
-  if (after == 0 && cell != 0) return static_cast<EvidenceCell>(change > 0 ? -1 : 1);
+  if ((after == 0 && cell != 0) || (tips && new_share < 1))
+    return static_cast<EvidenceCell>(change > 0 ? -1 : 1);
   return after;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "beam_evidence.h"
+#include "range_minimum.h"
 
 namespace cornerstone {
 
@@ -23,9 +24,14 @@ class ScanWedge {
     double cause = 0;  // of the beam most likely to have measured this cell
     const BeamEvidence* beam = nullptr;
   };
+  struct Sector {  // of the table; empty: first > last
+    int first = 0, last = -1;
+    double range_m = 0;
+  };
   void makeBearingTable(const RangeScan& scan);
-  Look lookAt(double range_m, double bearing_rad, double occupied) const;
-  void updateCell(Cell cell, const Eigen::Vector2d& from_sensor_m, const LookMotion& motion);
+  Sector sectorOf(double range_m, double bearing_rad) const;
+  Look lookAt(const Sector& sector, double occupied) const;
+  void updateCell(Cell cell, EvidenceCell& evidence, const Sector& sector, const LookMotion& motion);
   EvidenceCell updated(EvidenceCell cell, double change, double new_share) const;
 
   const OccupancyGrid& grid_;
@@ -33,6 +39,9 @@ class ScanWedge {
   CellWindow window_;
   std::vector<BeamEvidence> beams_;  // of beams that hit
   std::vector<int> beam_at_;         // by bearing; -1: none
+  // By bearing; infinite: no beam. What lies nearer is free, what lies farther learns nothing.
+  RangeMinimum free_up_to_m_, minus_end_m_;
+  EvidenceCell emptiest_;  // nothing can be taken from it
   double table_start_rad_ = 0;
   double table_step_rad_ = 0;
   double reach_m_ = 0;

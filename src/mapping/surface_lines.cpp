@@ -10,7 +10,8 @@ SurfaceLines::SurfaceLines(const OccupancyGrid& grid, const Eigen::Vector2d& low
                            const Eigen::Vector2d& high_m, double line_radius_m)
     : window_(grid.readWindow(low_m, high_m)),
       surface_(grid.readSurface(window_)),
-      line_radius_m_(line_radius_m) {}
+      line_radius_m_(line_radius_m),
+      lines_(surface_.size()) {}
 
 std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m, double gate_m) const {
   const GridGeometry& at = window_.geometry;
@@ -29,7 +30,9 @@ std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m,
       best = {col, row};
     }
   if (best.col < 0) return std::nullopt;
-  return lineAround(best);
+  KnownLine& line = lines_[window_.indexOf(best)];
+  if (!line.known) line = {true, lineAround(best)};
+  return line.line;
 }
 
 std::optional<SurfaceLine> SurfaceLines::lineAround(Cell cell) const {

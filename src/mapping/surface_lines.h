@@ -22,9 +22,14 @@ class SurfaceLines {
 
  private:
   std::optional<SurfaceLine> lineAround(Cell cell) const;
+  struct KnownLine {
+    bool known = false;
+    std::optional<SurfaceLine> line;
+  };
   CellWindow window_;
   std::vector<SurfacePoint> surface_;
   double line_radius_m_;
+  mutable std::vector<KnownLine> lines_;  // around each cell asked for: neighbouring ends ask for the same
 };
 
 }  // namespace cornerstone

@@ -1,6 +1,7 @@
 // Ranges and odometry in, a map and the drift of the odometry out. Takes disparity (with disparity_sigma and
 // reference/camera_info), depth (with camera_info) or scan, and tf; gives map, map_updates, map_metadata,
-// map_tiles, stereo_scan, tf map -> odom; services save_map, load_map, static_map, reset.
+// map_tiles, the same of each level as map/<level>, stereo_scan, tf map -> odom; services save_map, load_map,
+// static_map, reset.
 #include <message_filters/subscriber.h>
 #include <message_filters/time_synchronizer.h>
 #include <nav_msgs/GetMap.h>
@@ -42,12 +43,14 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     requirePositive(params_.tf_period_s, "parameter 'tf_period_s'");
     requirePositive(params_.tf_timeout_s, "parameter 'tf_timeout_s'");
     requireWithin(params_.disparity_sigma_px, 0, 10, "parameter 'disparity_sigma_px'");
-    mapper_.emplace(params_.mapper);
+    requireValid(params_.scan);
+    mapper_.emplace(params_.mapper, params_.scan.levels.size());
+    begin();
     diagnostics_.emplace(node, getPrivateNodeHandle(), "mapper");
     pending_.emplace(params_.tf_timeout_s,
                      [this](const std::string& cause) { diagnostics_->dropped(cause); });
     tf_listener_.emplace(tf_buffer_);
-    map_publisher_.emplace(node, params_.robot, params_.frames.map);
+    map_publisher_.emplace(node, MapPublisherSetup{params_.robot, params_.frames.map, levelNames()});
     scan_publisher_ = node.advertise<sensor_msgs::LaserScan>("stereo_scan", 1);
     subscribe(node);
     serve(node);
@@ -90,69 +93,70 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
 
   void takeInfo(const sensor_msgs::CameraInfoConstPtr& info) { info_ = info; }
 
+  using Convert = std::function<RangeScan(const Eigen::Isometry3d& level_from_sensor)>;
+
   void takeDisparity(const stereo_msgs::DisparityImageConstPtr& message,
                      const sensor_msgs::ImageConstPtr& sigma) {
-    takeRanges(message->header, [&](const Eigen::Isometry3d& base_from_sensor) {
-      if (!info_) throw InputError("reference/camera_info: none received yet");
+    take(message->header, [this, message, sigma, info = info_](const Eigen::Isometry3d& level_from_sensor) {
+      if (!info) throw InputError("reference/camera_info: none received yet");
       const cv::Mat1f sigma_px =
           sigma ? floatImage(*sigma, "disparity_sigma")
                 : cv::Mat1f(static_cast<int>(message->image.height), static_cast<int>(message->image.width),
                             static_cast<float>(params_.disparity_sigma_px));
-      return scanFromDisparity(fromDisparityImage(*message, *info_, sigma_px), base_from_sensor,
+      return scanFromDisparity(fromDisparityImage(*message, *info, sigma_px), level_from_sensor,
                                params_.scan);
     });
   }
 
   void takeDepth(const sensor_msgs::ImageConstPtr& message) {
-    takeRanges(message->header, [&](const Eigen::Isometry3d& base_from_sensor) {
-      if (!info_) throw InputError("camera_info: none received yet");
-      return scanFromDepth(fromDepthImage(message, *info_), params_.depth, base_from_sensor, params_.scan);
+    take(message->header, [this, message, info = info_](const Eigen::Isometry3d& level_from_sensor) {
+      if (!info) throw InputError("camera_info: none received yet");
+      return scanFromDepth(fromDepthImage(message, *info), params_.depth, level_from_sensor, params_.scan);
     });
   }
 
   void takeLaser(const sensor_msgs::LaserScanConstPtr& message) {
-    takeRanges(message->header, [&](const Eigen::Isometry3d& base_from_sensor) {
-      return scanFromRanges(fromLaserScan(*message, planarPart(base_from_sensor)), params_.laser);
+    take(message->header, [this, message](const Eigen::Isometry3d& level_from_sensor) {
+      return scanFromRanges(fromLaserScan(*message, planarPart(level_from_sensor)), params_.laser);
     });
   }
 
-  // What all kinds of ranges share: mounting, order, waiting for odometry. A message at fault is counted and
-  // left out.
-  void takeRanges(const std_msgs::Header& header,
-                  const std::function<RangeScan(const Eigen::Isometry3d& base_from_sensor)>& convert) {
-    try {
-      if (pending_->jumpedBack(header.stamp)) beginAnew("time jumped back");
-      const auto base_from_sensor = lookUp(tf_buffer_, params_.frames.base, header.frame_id, ros::Time(0));
-      if (!base_from_sensor) throw InputError("no tf " + params_.frames.base + " -> " + header.frame_id);
-      pending_->add({header.stamp, convert(*base_from_sensor)});
-      diagnostics_->complain("");
-    } catch (const InputError& error) {
-      diagnostics_->complain(error.what());
-      diagnostics_->dropped(error.what());
+  // What all kinds of ranges share: order, and waiting for where they were taken.
+  void take(const std_msgs::Header& header, Convert convert) {
+    if (pending_->jumpedBack(header.stamp)) {
+      tf_buffer_.clear();  // else poses of the old time would be mixed with those of the new one
+      beginAnew("time jumped back");
     }
+    pending_->add({header.stamp, header.frame_id, std::move(convert)});
     release();
   }
 
   void release() {
-    pending_->release(
-        tf_buffer_, params_.frames.odom, params_.frames.base,
-        [this](const PendingScan& pending, const Pose2& odom_from_base) { map(pending, odom_from_base); });
+    pending_->release(tf_buffer_, {params_.frames.odom, params_.frames.base, params_.use_tilt},
+                      [this](const PendingScan& pending, const LookPose& pose) { map(pending, pose); });
   }
 
-  void map(const PendingScan& pending, const Pose2& odom_from_base) {
+  // A message at fault is counted and left out.
+  void map(const PendingScan& pending, const LookPose& pose) {
     const ros::WallTime start = ros::WallTime::now();
     try {
-      mapper_->update(pending.scan, odom_from_base);
+      const RangeScan scan = pending.convert(pose.level_from_sensor);
+      mapper_->update(scan, pose.odom_from_base);
+      diagnostics_->complain("");
       diagnostics_->processed((ros::WallTime::now() - start).toSec());
+      publishScan(scan, pending.stamp);
     } catch (const InputError& error) {
+      diagnostics_->complain(error.what());
       diagnostics_->dropped(error.what());
-      return;
     }
+  }
+
+  void publishScan(const RangeScan& scan, const ros::Time& stamp) {
     if (scan_publisher_.getNumSubscribers() == 0) return;
     std_msgs::Header header;
-    header.stamp = pending.stamp;
+    header.stamp = stamp;
     header.frame_id = params_.frames.base;
-    scan_publisher_.publish(toLaserScan(pending.scan, header));
+    scan_publisher_.publish(toLaserScan(scan, header));
   }
 
   void tick() {
@@ -164,31 +168,51 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
         toStamped(mapper_->mapFromOdom(), params_.frames.map, params_.frames.odom, now));
   }
 
+  std::vector<std::string> levelNames() const {
+    std::vector<std::string> names;
+    for (const Level& level : params_.scan.levels) names.push_back(level.name);
+    return names;
+  }
+
+  // As the parameters say: in an empty map or in a saved one.
+  void begin() {
+    if (params_.load_map.empty()) return;
+    try {
+      mapper_->load(loadLevels(params_.load_map, levelNames()), params_.start);
+    } catch (const InputError& error) {
+      throw InputError(std::string("parameter 'load_map': ") + error.what());
+    }
+  }
+
   void beginAnew(const std::string& reason) {
     NODELET_WARN_STREAM(getName() << ": " << reason << ": the map begins anew");
     mapper_->reset();
+    try {
+      begin();
+    } catch (const InputError& error) {  // the file was there at the start
+      diagnostics_->dropped(error.what());
+    }
     pending_->clear();
     last_broadcast_ = ros::Time();
     map_publisher_->publish(*mapper_);
   }
 
   bool saveMapFile(MapFile::Request& request, MapFile::Response& response) {
-    return attempt(response, [&] { saveMap(mapper_->grid().snapshot(), yamlPath(request.path)); });
+    return attempt(response, [&] {
+      std::vector<GridMap> levels;
+      for (std::size_t i = 0; i < params_.scan.levels.size(); ++i) levels.push_back(mapper_->map(i));
+      saveLevels(levels, request.path, levelNames());
+    });
   }
 
   bool loadMapFile(MapFile::Request& request, MapFile::Response& response) {
     return attempt(response, [&] {
       const Pose2 map_from_base{request.x, request.y, request.yaw};
       if (!map_from_base.isFinite()) throw InputError("load_map: x, y or yaw is not finite");
-      mapper_->load(loadMap(yamlPath(request.path)), map_from_base);
+      mapper_->load(loadLevels(request.path, levelNames()), map_from_base);
       pending_->clear();
       map_publisher_->publish(*mapper_);
     });
-  }
-
-  static std::string yamlPath(const std::string& path) {
-    const bool has_ending = path.size() >= 5 && path.compare(path.size() - 5, 5, ".yaml") == 0;
-    return has_ending ? path : path + ".yaml";
   }
 
   static bool attempt(MapFile::Response& response, const std::function<void()>& work) {
@@ -205,7 +229,7 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     std_msgs::Header header;
     header.stamp = ros::Time::now();
     header.frame_id = params_.frames.map;
-    response.map = toOccupancyGrid(mapper_->grid().snapshot(), header);
+    response.map = toOccupancyGrid(mapper_->map(), header);
     return true;
   }
 

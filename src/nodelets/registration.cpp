@@ -1,59 +1,51 @@
-// This robot's landmarks, and the pose of its map in the reference robot's map. Takes map_tiles of both
-// robots; gives landmarks, landmark_markers, registration, match_markers, merged_map and, while registered,
-// the tf between the maps.
+// This robot's landmarks, and the pose of its map in the reference robot's map. Takes map_tiles of this and
+// of the other robots, and their registration; gives landmarks, landmark_markers, registration,
+// match_markers, merged_map, the service align and, while registered, the tf between the maps.
+#include <ros/callback_queue.h>
 #include <tf2_ros/transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "cornerstone/base/errors.h"
 #include "cornerstone/registration/frame_smoother.h"
-#include "cornerstone/registration/map_registrar.h"
-#include "cornerstone/registration/merge_maps.h"
+#include "cornerstone/ros/align_service.h"
 #include "cornerstone/ros/diagnostics.h"
-#include "cornerstone/ros/grid_messages.h"
-#include "cornerstone/ros/landmark_messages.h"
-#include "cornerstone/ros/nodelet_params.h"
 #include "cornerstone/ros/params.h"
-#include "cornerstone/ros/tile_follower.h"
 #include "cornerstone/ros/transforms.h"
 #include "nodelets/factories.h"
+#include "nodelets/followed_robots.h"
 #include "nodelets/nodelet_start.h"
+#include "nodelets/registration_topics.h"
 
 namespace cornerstone {
 namespace {
 
-using MapVersion = std::pair<std::uint32_t, std::uint32_t>;  // epoch, version
-
-// One robot's map as its tiles arrive.
-struct RobotMap {
-  TileFollower tiles;
-  ros::Subscriber subscriber;
-  std::optional<MapVersion> tried;  // the version of the last attempt
-
-  MapVersion version() const { return {tiles.epoch(), tiles.version()}; }
-  bool isNew() const { return !tiles.empty() && tried != version(); }
-  bool beganAnew() const { return tried && tried->first != tiles.epoch(); }
-};
-
-// What an attempt in the background brings home.
-struct Job {
-  RegistrationAttempt attempt;
-  std::optional<GridMap> merged;
-  MapVersion own, reference;  // the maps it looked at
-  Eigen::Vector2d centre_m;   // of the own map, where answers are compared
-  double elapsed_s = 0;
-};
+void requireUsable(const RegistrationNodeletParams& params) {
+  requirePositive(params.period_s, "parameter 'period_s'");
+  requirePositive(params.tf_period_s, "parameter 'tf_period_s'");
+  const std::vector<std::string>& others = params.other_robots;
+  for (const std::string& other : others)
+    if (other.empty() || other == params.robot || other == params.reference_robot ||
+        std::count(others.begin(), others.end(), other) > 1)
+      throw InputError("parameter 'other_robots': '" + other +
+                       "' is empty, named twice, this robot or the reference robot");
+}
 
 }  // namespace
 
 class RegistrationNodelet : public nodelet::Nodelet {
+ public:
+  ~RegistrationNodelet() override {
+    if (slow_spinner_) slow_spinner_->stop();
+  }
+
  private:
   void onInit() override {
     startOrRefuse(getName(), [this] { start(); });
@@ -63,18 +55,17 @@ class RegistrationNodelet : public nodelet::Nodelet {
     ros::NodeHandle& node = getNodeHandle();
     params_ = loadParams<RegistrationNodeletParams>(getPrivateNodeHandle());
     params_.frames = completed(params_.frames, params_.robot);
-    requirePositive(params_.period_s, "parameter 'period_s'");
-    requirePositive(params_.tf_period_s, "parameter 'tf_period_s'");
+    requireUsable(params_);
     registers_ = !params_.reference_robot.empty() && params_.reference_robot != params_.robot;
     if (params_.reference_map_frame.empty()) params_.reference_map_frame = params_.reference_robot + "/map";
-    tracker_.emplace(params_.tracker);
+    links_.emplace(params_.robot, params_.reference_robot, params_.other_robots, params_.tracker);
     diagnostics_.emplace(node, getPrivateNodeHandle(), "registration");
-    landmarks_publisher_ = node.advertise<CornerArray>("landmarks", 1, true);
-    markers_publisher_ = node.advertise<visualization_msgs::MarkerArray>("landmark_markers", 1, true);
-    follow(own_, node.resolveName("map_tiles"));
-    if (registers_) startRegistering(node);
     registrar_.emplace(params_.landmarks, params_.registration);
     smoother_.emplace(params_.tf_smoothing_s);
+    topics_.emplace(node, params_, registers_);
+    if (registers_) startRegistering(node);
+    followAll(node);
+    serve(node);
     attempt_timer_ =
         node.createTimer(ros::Duration(params_.period_s), [this](const ros::TimerEvent&) { attempt(); });
     collect_timer_ =
@@ -82,95 +73,147 @@ class RegistrationNodelet : public nodelet::Nodelet {
   }
 
   void startRegistering(ros::NodeHandle& node) {
-    registration_publisher_ = node.advertise<MapRegistration>("registration", 1, true);
-    matches_publisher_ = node.advertise<visualization_msgs::MarkerArray>("match_markers", 1, true);
-    merged_publisher_ = node.advertise<nav_msgs::OccupancyGrid>("merged_map", 1, true);
-    // The other robots stand beside this one's namespace: /b follows /a/map_tiles.
-    const std::string beside = ros::names::parentNamespace(node.getNamespace());
-    follow(reference_, ros::names::append(beside, params_.reference_robot + "/map_tiles"));
     listener_.emplace(tf_buffer_, node);
     broadcaster_.emplace();
     tf_timer_ =
         node.createTimer(ros::Duration(params_.tf_period_s), [this](const ros::TimerEvent&) { broadcast(); });
   }
 
-  void follow(RobotMap& robot, const std::string& topic) {
-    robot.subscriber =
-        getNodeHandle().subscribe<MapTiles>(topic, 100, [this, &robot, topic](const MapTilesConstPtr& tiles) {
-          try {
-            if (!robot.tiles.take(*tiles)) return;
-            tracker_->lose(topic + ": the map began anew");
-            smoother_->reset();
-            last_broadcast_ = ros::Time();  // maps begin anew when time has jumped back, too
-          } catch (const InputError& error) {
-            diagnostics_->dropped(topic + ": " + error.what());
-          }
+  void followAll(ros::NodeHandle& node) {
+    robots_.emplace(node, FollowedRobots::Callbacks{
+                              [this](const std::string& robot, bool first) { mapBegan(robot, first); },
+                              [this](const std::string& robot, const MapRegistration& m) { hear(robot, m); },
+                              [this](const std::string& cause) { diagnostics_->dropped(cause); }});
+    robots_->follow(params_.robot, true);
+    if (registers_) robots_->follow(params_.reference_robot, false);
+    for (const std::string& other : params_.other_robots) robots_->follow(other, false);
+    if (!registers_) return;
+    // The reference robot has every second turn: its link is worth most.
+    for (const std::string& other : params_.other_robots) {
+      turns_.push_back(params_.reference_robot);
+      turns_.push_back(other);
+    }
+    if (turns_.empty()) turns_.push_back(params_.reference_robot);
+  }
+
+  // Aligning files takes a while: it has a thread of its own, in which nothing of this object changes.
+  void serve(const ros::NodeHandle& node) {
+    ros::NodeHandle slow(node);
+    slow.setCallbackQueue(&slow_queue_);
+    align_service_ = slow.advertiseService<AlignMaps::Request, AlignMaps::Response>(
+        "align", [this](AlignMaps::Request& request, AlignMaps::Response& response) {
+          response = alignFiles(request, params_.landmarks, params_.registration);
+          return true;
         });
+    slow_spinner_.emplace(1, &slow_queue_);
+    slow_spinner_->start();
+  }
+
+  void mapBegan(const std::string& robot, bool first) {
+    if (robot != params_.robot)
+      links_->beginAnew(robot, robots_->at(robot).tiles.epoch());
+    else if (!first)
+      links_->beginAnew(robot + ": the map began anew");
+    if (!first) last_broadcast_ = ros::Time();  // maps begin anew when time has jumped back, too
+    refresh();
+  }
+
+  // What another robot tells of its own place in the reference map.
+  void hear(const std::string& robot, const MapRegistration& message) {
+    try {
+      const bool same_reference = message.reference_robot == params_.reference_robot;
+      links_->hear(robot, same_reference ? fromMessage(message) : std::nullopt);
+    } catch (const InputError& error) {
+      links_->hear(robot, std::nullopt);
+      diagnostics_->dropped(robot + ": " + error.what());
+    }
+    refresh();
   }
 
   // Looks at maps that changed, in a thread of its own: callbacks never wait for it.
   void attempt() {
     collect();
-    if (job_.valid()) return;  // still at the last maps
-    const bool both = registers_ && !own_.tiles.empty() && !reference_.tiles.empty();
-    if (own_.isNew() || (both && reference_.isNew())) startJob(both);
-    if (registers_) publishRegistration();
+    if (!job_.valid()) {  // else it is still at the last maps
+      const auto robot = robots_->nextTurn(params_.robot, turns_);
+      const bool changed = robots_->changed() && !robots_->at(params_.robot).tiles.empty();
+      if (robot || changed) startJob(robot.value_or(""));
+    }
+    refresh();
+    if (registers_) topics_->publishRegistration(shared_, *robots_);
   }
 
-  void startJob(bool both) {
-    RegistrationTask task;
-    task.current = own_.tiles.map();
-    if (both) task.reference = reference_.tiles.map();
-    task.hints = hints();
-    task.time_s = ros::Time::now().toSec();
-    task.current_anew = own_.beganAnew();
-    task.reference_anew = reference_.beganAnew();
-    own_.tried = own_.version();
-    reference_.tried = reference_.version();
-    std::optional<Pose2> merge_at;
-    if (both && tracker_->state() == RegistrationState::kRegistered &&
-        merged_publisher_.getNumSubscribers() > 0)
-      merge_at = tracker_->estimate()->reference_from_current;
-    Job job;
-    job.own = own_.version();
-    job.reference = reference_.version();
-    job.centre_m = task.hints.focus_in_current_m.value_or(knownCentre(task.current));
-    job_ = std::async(std::launch::async, [this, task = std::move(task), job, merge_at]() mutable {
-      const ros::WallTime start = ros::WallTime::now();
-      job.attempt = registrar_->attempt(task);
-      if (merge_at) job.merged = mergeMaps(*task.reference, task.current, *merge_at);
-      job.elapsed_s = (ros::WallTime::now() - start).toSec();
-      return job;
-    });
+  void startJob(const std::string& robot) {
+    RegistrationJob job;
+    job.robot = robot;
+    job.own = robots_->at(params_.robot).tiles;
+    job.task.time_s = ros::Time::now().toSec();
+    job.task.current_anew = robots_->isAnew(params_.robot);
+    if (!robot.empty()) {
+      job.other = robots_->at(robot).tiles;
+      job.task.reference_robot = robot;
+      job.task.reference_anew = robots_->isAnew(robot);
+      job.task.hints = hintsFor(robot);
+    }
+    if (topics_->mergedIsWanted()) wantMerged(job);
+    job_ = std::async(std::launch::async,
+                      [this, job = std::move(job)]() mutable { return run(std::move(job), *registrar_); });
   }
 
-  RegistrationHints hints() const {
+  // All maps whose place in the reference map is known; none unless this robot's own is.
+  void wantMerged(RegistrationJob& job) const {
+    if (registers_ && shared_.state != RegistrationState::kRegistered) return;
+    job.merge_into = robots_->at(registers_ ? params_.reference_robot : params_.robot).tiles;
+    if (registers_)
+      job.merge.push_back({robots_->at(params_.robot).tiles, shared_.route->reference_from_current});
+    for (const std::string& other : params_.other_robots) {
+      const auto route = links_->routeOf(other);
+      if (route) job.merge.push_back({robots_->at(other).tiles, route->reference_from_current});
+    }
+    if (job.merge_into->empty() || job.merge.empty()) job.merge_into.reset();
+  }
+
+  RegistrationHints hintsFor(const std::string& robot) const {
     RegistrationHints hints;
-    if (tracker_->state() == RegistrationState::kRegistered)
-      hints.prior = tracker_->estimate()->reference_from_current;
-    else if (params_.initial.known)
+    hints.prior = links_->priorFor(robot, shared_);
+    if (!hints.prior && params_.initial.known && robot == params_.reference_robot)
       hints.prior = params_.initial.reference_from_current;
     hints.focus_in_current_m = whereTheRobotIs();
     return hints;
   }
 
-  // Takes up what a finished attempt found, unless one of its maps has begun anew meanwhile.
+  // Takes up what a finished job found, unless one of its maps has begun anew meanwhile.
   void collect() {
     if (!job_.valid() || job_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    const Job job = job_.get();
-    if (job.own.first != own_.tiles.epoch() ||
-        (registers_ && job.reference.first != reference_.tiles.epoch()))
-      return;
-    publishLandmarks(job);
-    diagnostics_->processed(job.elapsed_s);
-    if (!registers_ || reference_.tiles.empty()) return;
-    refusal_ = job.attempt.outcome.refusal;
-    const double now_s = ros::Time::now().toSec();
+    const RegistrationFindings found = job_.get();
+    const std::string& robot = found.job.robot;
+    const auto isOld = [&](const std::string& name, const TileFollower& tiles) {
+      return robots_->at(name).tiles.epoch() != tiles.epoch();
+    };
+    if (isOld(params_.robot, found.job.own) || (!robot.empty() && isOld(robot, found.job.other))) return;
+    topics_->publishLandmarks(found);
+    diagnostics_->processed(found.elapsed_s);
+    centre_m_ = found.centre_m;
+    if (!robot.empty()) takeUp(robot, found.attempt);
+    if (found.merged) topics_->publishMerged(*found.merged);
+  }
+
+  void takeUp(const std::string& robot, const RegistrationAttempt& attempt) {
+    if (robot == params_.reference_robot) refusal_ = attempt.outcome.refusal;
     // An answer that the tracker holds back as an outlier must not lend its pairs to the frame that stands.
-    if (tracker_->update(job.attempt.outcome.registration, job.centre_m, now_s)) keepPairs(job.attempt);
-    centre_m_ = job.centre_m;
-    publishRegistration();
-    if (job.merged) publishMerged(*job.merged);
+    if (links_->update(robot, attempt.outcome.registration, centre_m_, ros::Time::now().toSec()))
+      topics_->keepPairs(robot, attempt);
+    refresh();
+    topics_->publishRegistration(shared_, *robots_);
+  }
+
+  // The shared frame from all that is known now.
+  void refresh() {
+    if (!registers_) return;
+    const RegistrationState before = shared_.state;
+    shared_ = links_->shared(centre_m_, ros::Time::now().toSec());
+    if (shared_.state == RegistrationState::kNone && !refusal_.empty()) shared_.reason = refusal_;
+    if (shared_.state != RegistrationState::kRegistered) smoother_->reset();
+    if (shared_.state != before) topics_->publishRegistration(shared_, *robots_);  // at once
   }
 
   // In its own map; empty while tf does not say.
@@ -180,84 +223,26 @@ class RegistrationNodelet : public nodelet::Nodelet {
     return Eigen::Vector2d(map_from_base->translation().head<2>());
   }
 
-  void publishLandmarks(const Job& job) {
-    CornerArray message;
-    message.header.stamp = ros::Time::now();
-    message.header.frame_id = params_.frames.map;
-    message.robot = params_.robot;
-    std::tie(message.map_epoch, message.version) = job.own;
-    const Landmarks& landmarks = job.attempt.landmarks;
-    for (const CornerLandmark& corner : landmarks.corners)
-      message.corners.push_back(toMessage(corner, message.header.stamp.toSec()));
-    landmarks_publisher_.publish(message);
-    if (markers_publisher_.getNumSubscribers() > 0)
-      markers_publisher_.publish(toMarkers(landmarks, params_.landmarks.arm_length_m, message.header));
-  }
-
-  void publishRegistration() {
-    const ros::Time now = ros::Time::now();
-    MapRegistration message = toMessage(*tracker_, now.toSec());
-    message.header.stamp = now;
-    message.header.frame_id = message.reference_frame = params_.reference_map_frame;
-    message.current_frame = params_.frames.map;
-    message.reference_robot = params_.reference_robot;
-    message.current_robot = params_.robot;
-    message.reference_epoch = reference_.tiles.epoch();
-    message.current_epoch = own_.tiles.epoch();
-    if (message.state == MapRegistration::NONE && !refusal_.empty()) message.reason = refusal_;
-    if (tracker_->estimate()) {
-      message.reference_corners = reference_corners_;
-      message.current_corners = current_corners_;
-    }
-    registration_publisher_.publish(message);
-    if (message.state != MapRegistration::REGISTERED) return;
-    if (matches_publisher_.getNumSubscribers() > 0) matches_publisher_.publish(toMatchMarkers(message));
-  }
-
-  void publishMerged(const GridMap& merged) {
-    std_msgs::Header header;
-    header.stamp = ros::Time::now();
-    header.frame_id = params_.reference_map_frame;
-    merged_publisher_.publish(toOccupancyGrid(merged, header));
-  }
-
-  void keepPairs(const RegistrationAttempt& attempt) {
-    const double now_s = ros::Time::now().toSec();
-    reference_corners_.clear();
-    current_corners_.clear();
-    for (const auto& [reference, current] : attempt.pairs) {
-      reference_corners_.push_back(toMessage(reference, now_s));
-      current_corners_.push_back(toMessage(current, now_s));
-    }
-  }
-
   void broadcast() {
     const ros::Time now = ros::Time::now();
-    if (tracker_->state() != RegistrationState::kRegistered) smoother_->reset();
-    if (tracker_->state() != RegistrationState::kRegistered || now <= last_broadcast_) return;
+    if (shared_.state != RegistrationState::kRegistered || now <= last_broadcast_) return;
     last_broadcast_ = now;
-    const Pose2 shown =
-        smoother_->follow(tracker_->estimate()->reference_from_current, centre_m_, now.toSec());
+    const Pose2 shown = smoother_->follow(shared_.route->reference_from_current, centre_m_, now.toSec());
     broadcaster_->sendTransform(toStamped(shown, params_.reference_map_frame, params_.frames.map, now));
   }
 
   RegistrationNodeletParams params_;
   bool registers_ = false;
-  RobotMap own_;
-  RobotMap reference_;
-  std::optional<RegistrationTracker> tracker_;
+  std::optional<RobotLinks> links_;
+  SharedFrame shared_;
+  std::optional<FollowedRobots> robots_;
+  std::vector<std::string> turns_;         // robots to be compared with, one after the other
   std::optional<MapRegistrar> registrar_;  // used by the job alone while there is one
   std::optional<FrameSmoother> smoother_;
   Eigen::Vector2d centre_m_ = Eigen::Vector2d::Zero();  // of the own map, where answers are compared
   std::optional<StageDiagnostics> diagnostics_;
-  std::string refusal_;
-  std::vector<Corner> reference_corners_;  // the pairs of the newest answer that the tracker took
-  std::vector<Corner> current_corners_;
-  ros::Publisher landmarks_publisher_;
-  ros::Publisher markers_publisher_;
-  ros::Publisher registration_publisher_;
-  ros::Publisher matches_publisher_;
-  ros::Publisher merged_publisher_;
+  std::string refusal_;  // of the newest attempt with the reference robot
+  std::optional<RegistrationTopics> topics_;
   tf2_ros::Buffer tf_buffer_;
   std::optional<tf2_ros::TransformListener> listener_;
   std::optional<tf2_ros::TransformBroadcaster> broadcaster_;
@@ -265,7 +250,10 @@ class RegistrationNodelet : public nodelet::Nodelet {
   ros::Timer collect_timer_;
   ros::Timer tf_timer_;
   ros::Time last_broadcast_;
-  std::future<Job> job_;  // last: it ends before what it uses
+  ros::CallbackQueue slow_queue_;
+  ros::ServiceServer align_service_;
+  std::optional<ros::AsyncSpinner> slow_spinner_;
+  std::future<RegistrationFindings> job_;  // last: it ends before what it uses
 };
 
 std::unique_ptr<nodelet::Nodelet> makeRegistration() { return std::make_unique<RegistrationNodelet>(); }

@@ -1,43 +1,29 @@
 // Images of two or three cameras in, disparity out. Takes {reference,right,top}/{image_rect or image_raw,
-// camera_info}; gives disparity, disparity_sigma, rejections, disparity_picture, each only for who listens.
+// camera_info}; gives disparity, disparity_sigma, rejections, disparity_picture, points, each only for who
+// listens.
+#include <dynamic_reconfigure/server.h>
 #include <sensor_msgs/image_encodings.h>
+#include <algorithm>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "cornerstone/base/errors.h"
 #include "cornerstone/ros/image_messages.h"
 #include "cornerstone/ros/params.h"
+#include "cornerstone/ros/point_messages.h"
+#include "cornerstone/ros/stereo_reconfigure.h"
 #include "cornerstone/stereo/disparity_picture.h"
-#include "cornerstone/stereo/rectifier.h"
-#include "cornerstone/stereo/stereo_matcher.h"
+#include "cornerstone/stereo/rig_check.h"
 #include "nodelets/factories.h"
 #include "nodelets/image_sets.h"
 #include "nodelets/nodelet_start.h"
+#include "nodelets/stereo_cameras.h"
 
 namespace cornerstone {
 namespace {
 
-using sensor_msgs::ImageConstPtr;
-
 // A set waits this long for calibrations: connections come one by one, and drivers repeat camera_info with
 // every image.
 constexpr double kCalibrationWait_s = 2;
-
-// One camera: the newest calibration and, for raw images, the rectification made from it.
-struct Camera {
-  std::string name;
-  ros::Subscriber info_subscriber;
-  sensor_msgs::CameraInfo info;
-  std::optional<CameraCalibration> calibration;
-  std::optional<Rectifier> rectifier;
-  cv::Mat1b rectified;  // kept, so that nothing is allocated image by image
-};
-
-// Fewer pixels with texture that have an answer, in so many sets on end: the images do not fit the
-// calibrations.
-constexpr double kLeastMatched = 0.1;
-constexpr int kPoorSets = 10;
-
-std::size_t cameraCount(const ImageSet& set) { return set.images[2] ? 3 : 2; }
 
 }  // namespace
 
@@ -56,48 +42,48 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     requireWithin(params_.third_camera_silence_s, 0, 3600, "parameter 'third_camera_silence_s'");
     requirePositive(params_.queue_size, "parameter 'queue_size'");
     matcher_.emplace(params_.stereo);
+    // It starts from the values on the parameter server, which are those of params_.
+    reconfigure_.emplace(ros::NodeHandle(getPrivateNodeHandle(), "stereo"));
+    reconfigure_->setCallback([this](StereoConfig& config, unsigned) { reconfigure(config); });
     diagnostics_.emplace(node, getPrivateNodeHandle(), "stereo");
-    disparity_publisher_ = node.advertise<stereo_msgs::DisparityImage>("disparity", 1);
-    sigma_publisher_ = node.advertise<sensor_msgs::Image>("disparity_sigma", 1);
-    rejections_publisher_ = node.advertise<sensor_msgs::Image>("rejections", 1);
-    picture_publisher_ = node.advertise<sensor_msgs::Image>("disparity_picture", 1);
-    subscribe(node);
+    advertise(node);
+    cameras_.emplace(node, params_, [this] { takeCalibrations(); });
+    sets_.emplace(node, params_, *diagnostics_, [this](const ImageSet& set) {
+      cameras_->uncalibrated(set).empty() ? match(set) : hold(set);
+    });
     held_timer_ = node.createWallTimer(ros::WallDuration(kCalibrationWait_s / 4),
                                        [this](const ros::WallTimerEvent&) { dropOldHeld(); });
   }
 
-  void subscribe(ros::NodeHandle& node) {
-    for (std::size_t i = 0; i < (params_.third_camera ? 3 : 2); ++i) {
-      Camera& camera = cameras_[i];
-      camera.name = node.resolveName(kCameras[i]);
-      camera.info_subscriber = node.subscribe<sensor_msgs::CameraInfo>(
-          std::string(kCameras[i]) + "/camera_info", 1,
-          [this, &camera](const sensor_msgs::CameraInfoConstPtr& info) { takeCalibration(camera, *info); });
-    }
-    sets_.emplace(node, params_, *diagnostics_,
-                  [this](const ImageSet& set) { uncalibrated(set).empty() ? match(set) : hold(set); });
+  void advertise(ros::NodeHandle& node) {
+    disparity_publisher_ = node.advertise<stereo_msgs::DisparityImage>("disparity", 1);
+    sigma_publisher_ = node.advertise<sensor_msgs::Image>("disparity_sigma", 1);
+    rejections_publisher_ = node.advertise<sensor_msgs::Image>("rejections", 1);
+    picture_publisher_ = node.advertise<sensor_msgs::Image>("disparity_picture", 1);
+    points_publisher_ = node.advertise<sensor_msgs::PointCloud2>("points", 1);
   }
 
-  void takeCalibration(Camera& camera, const sensor_msgs::CameraInfo& info) {
-    sensor_msgs::CameraInfo unstamped = info;
-    unstamped.header = camera.info.header;
-    if (camera.calibration && unstamped == camera.info) return;
-    camera.info = unstamped;
-    camera.calibration = toCalibration(info, camera.name + "/camera_info");
-    camera.rectifier.reset();
-    for (auto& rig : rigs_) rig.reset();
+  // What the matcher refuses changes nothing, and the caller is answered with what holds.
+  void reconfigure(StereoConfig& config) {
+    try {
+      const StereoParams changed = changedBy(config, params_.stereo);
+      matcher_.emplace(changed);
+      rig_check_.emplace(changed);
+      params_.stereo = changed;
+      config_ = config;
+    } catch (const InputError& error) {
+      NODELET_WARN_STREAM("refused: " << error.what());
+      config = config_;
+    }
+  }
+
+  void takeCalibrations() {
+    rig_check_.emplace(params_.stereo);
     matchHeld();
   }
 
-  // What is said of the set's first camera without a calibration; empty: all have one.
-  std::string uncalibrated(const ImageSet& set) const {
-    for (std::size_t i = 0; i < cameraCount(set); ++i)
-      if (!cameras_[i].calibration) return cameras_[i].name + "/camera_info: none received yet";
-    return {};
-  }
-
   void matchHeld() {
-    while (!held_.empty() && uncalibrated(held_.front()).empty()) {
+    while (!held_.empty() && cameras_->uncalibrated(held_.front()).empty()) {
       const ImageSet set = held_.front();
       held_.pop_front();
       match(set);
@@ -105,7 +91,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   }
 
   void dropOldestHeld() {
-    const std::string cause = uncalibrated(held_.front());
+    const std::string cause = cameras_->uncalibrated(held_.front());
     held_.pop_front();
     diagnostics_->complain(cause);
     diagnostics_->dropped(cause);
@@ -123,39 +109,20 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     if (held_.size() > static_cast<std::size_t>(params_.queue_size)) dropOldestHeld();
   }
 
-  // The rig of the first `count` cameras' newest calibrations; InputError when they do not fit together.
-  const TrinocularRig& rigOf(std::size_t count) {
-    std::optional<TrinocularRig>& rig = rigs_[count - 2];
-    if (rig) return *rig;
-    if (params_.images == "image_raw")
-      for (std::size_t i = 0; i < count; ++i)
-        if (!cameras_[i].rectifier) cameras_[i].rectifier.emplace(*cameras_[i].calibration);
-    rig = makeRig(*cameras_[0].calibration, *cameras_[1].calibration,
-                  count > 2 ? cameras_[2].calibration : std::nullopt);
-    return *rig;
-  }
-
-  cv::Mat1b imageOf(Camera& camera, const ImageConstPtr& message) {
-    if (!message) return {};
-    const cv::Mat1b grey = toGrey(message, camera.name + "/" + params_.images);
-    if (!camera.rectifier) return grey;
-    camera.rectifier->rectify(grey, camera.rectified);
-    return camera.rectified;
-  }
-
   void match(const ImageSet& set) {
     try {
       const ros::WallTime start = ros::WallTime::now();
-      const TrinocularRig& rig = rigOf(cameraCount(set));
-      const StereoImages images{imageOf(cameras_[0], set.images[0]), imageOf(cameras_[1], set.images[1]),
-                                imageOf(cameras_[2], set.images[2])};
+      const TrinocularRig& rig = cameras_->rigOf(set);
+      const StereoImages images = cameras_->imagesOf(set);
       requireUsable(images, rig);
       if (isWanted()) {
         matcher_->match(images, rig, disparity_);
-        publish(set.images[0]->header);
+        rig_check_->look(images, disparity_);
+        if (!rig_check_->complaint().empty()) throw InputError(rig_check_->complaint());
+        publish(images.reference, set.images[0]->header);
       }
       const bool third_is_missing = params_.third_camera && !set.images[2];
-      diagnostics_->complain(third_is_missing ? cameras_[2].name + " is silent: two cameras go on alone"
+      diagnostics_->complain(third_is_missing ? cameras_->nameOf(2) + " is silent: two cameras go on alone"
                                               : "");
       diagnostics_->processed((ros::WallTime::now() - start).toSec());
     } catch (const InputError& error) {
@@ -164,22 +131,14 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     }
   }
 
-  std::string complaintOf(const ImageSet& set) const {
-    if (poor_sets_ >= kPoorSets)
-      return "hardly a pixel matches: cameras swapped, calibrations of another rig, or images of different "
-             "instants";
-    if (params_.third_camera && !set.images[2])
-      return cameras_[2].name + " is silent: two cameras go on alone";
-    return {};
-  }
-
   bool isWanted() const {
-    return disparity_publisher_.getNumSubscribers() + sigma_publisher_.getNumSubscribers() +
-               rejections_publisher_.getNumSubscribers() + picture_publisher_.getNumSubscribers() >
-           0;
+    const std::array publishers{&disparity_publisher_, &sigma_publisher_, &rejections_publisher_,
+                                &picture_publisher_, &points_publisher_};
+    return std::any_of(publishers.begin(), publishers.end(),
+                       [](const ros::Publisher* publisher) { return publisher->getNumSubscribers() > 0; });
   }
 
-  void publish(const std_msgs::Header& header) {
+  void publish(const cv::Mat1b& reference, const std_msgs::Header& header) {
     namespace encodings = sensor_msgs::image_encodings;
     const double searched_px = params_.stereo.max_disparity_px;
     if (disparity_publisher_.getNumSubscribers() > 0)
@@ -188,6 +147,8 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
       sigma_publisher_.publish(toImage(disparity_.sigma_px, encodings::TYPE_32FC1, header));
     if (rejections_publisher_.getNumSubscribers() > 0)
       rejections_publisher_.publish(toImage(disparity_.rejection, encodings::MONO8, header));
+    if (points_publisher_.getNumSubscribers() > 0)
+      points_publisher_.publish(toPointCloud(disparity_, reference, header));
     if (picture_publisher_.getNumSubscribers() == 0) return;
     drawDisparity(disparity_.disparity_px, searched_px, picture_);
     picture_publisher_.publish(toImage(picture_, encodings::BGR8, header));
@@ -195,19 +156,21 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
 
   TrinocularStereoParams params_;
   std::optional<StereoMatcher> matcher_;
+  std::optional<RigCheck> rig_check_;
   std::optional<StageDiagnostics> diagnostics_;
-  std::array<Camera, 3> cameras_;
-  std::array<std::optional<TrinocularRig>, 2> rigs_;  // of two and of three cameras
+  std::optional<StereoCameras> cameras_;
   std::optional<ImageSets> sets_;
   std::deque<ImageSet> held_;  // complete sets that came before the calibrations, oldest first
   ros::WallTimer held_timer_;
   Disparity disparity_;
-  int poor_sets_ = 0;  // on end, see kPoorSets
   cv::Mat3b picture_;
   ros::Publisher disparity_publisher_;
   ros::Publisher sigma_publisher_;
   ros::Publisher rejections_publisher_;
   ros::Publisher picture_publisher_;
+  ros::Publisher points_publisher_;
+  StereoConfig config_;  // what params_.stereo holds
+  std::optional<dynamic_reconfigure::Server<StereoConfig>> reconfigure_;
 };
 
 std::unique_ptr<nodelet::Nodelet> makeTrinocularStereo() {

@@ -12,7 +12,10 @@ void describe(ParamVisitor& visitor, PipelineParams& params) {
 }
 
 RobotPipeline::RobotPipeline(const StereoMounting& mounting, const PipelineParams& params)
-    : mounting_(mounting), params_(params), matcher_(params.stereo), mapper_(params.mapper) {}
+    : mounting_(mounting),
+      params_(params),
+      matcher_(params.stereo),
+      mapper_(params.mapper, params.scan.levels.size()) {}
 
 MapperUpdate RobotPipeline::update(const StereoImages& images, const Pose2& odom_from_base) {
   const Disparity disparity = matcher_.match(images, mounting_.rig);

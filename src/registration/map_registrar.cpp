@@ -3,10 +3,7 @@
 namespace cornerstone {
 
 MapRegistrar::MapRegistrar(const LandmarkParams& landmarks, const RegistrationParams& registration)
-    : landmark_params_(landmarks),
-      params_(registration),
-      reference_{LandmarkFollower(landmarks), {}},
-      current_{LandmarkFollower(landmarks), {}} {}
+    : landmark_params_(landmarks), params_(registration), current_{LandmarkFollower(landmarks), {}} {}
 
 void MapRegistrar::Side::update(const GridMap& map, double time_s, const RegistrationParams& params) {
   follower.update(map, time_s);
@@ -14,30 +11,36 @@ void MapRegistrar::Side::update(const GridMap& map, double time_s, const Registr
     evidence = gatherEvidence({map, follower.landmarks()}, params);
 }
 
+RegistrationOutcome MapRegistrar::registerIn(const Side& reference, const RegistrationHints& hints) const {
+  RegistrationOutcome outcome = registerMaps(reference.prepared(), current_.prepared(), hints, params_);
+  if (outcome.registration || !hints.prior) return outcome;
+  RegistrationHints anywhere = hints;
+  anywhere.prior.reset();
+  RegistrationOutcome found = registerMaps(reference.prepared(), current_.prepared(), anywhere, params_);
+  return found.registration ? found : outcome;
+}
+
 RegistrationAttempt MapRegistrar::attempt(const RegistrationTask& task) {
-  if (task.reference_anew) reference_ = {LandmarkFollower(landmark_params_), {}};
+  if (task.reference_anew) references_.erase(task.reference_robot);
   if (task.current_anew) current_ = {LandmarkFollower(landmark_params_), {}};
   RegistrationAttempt attempt;
-  if (task.reference) {
-    reference_.update(*task.reference, task.time_s, params_);
-    current_.update(task.current, task.time_s, params_);
-    attempt.outcome = registerMaps(reference_.prepared(), current_.prepared(), task.hints, params_);
-    if (!attempt.outcome.registration && task.hints.prior) {
-      RegistrationHints anywhere = task.hints;
-      anywhere.prior.reset();
-      RegistrationOutcome found = registerMaps(reference_.prepared(), current_.prepared(), anywhere, params_);
-      if (found.registration) attempt.outcome = found;
-    }
-  } else {
+  if (!task.reference) {
     current_.follower.update(task.current, task.time_s);
     current_.evidence.reset();
+    attempt.landmarks = current_.follower.landmarks();
+    return attempt;
   }
+  Side& reference =
+      references_.try_emplace(task.reference_robot, Side{LandmarkFollower(landmark_params_), {}})
+          .first->second;
+  reference.update(*task.reference, task.time_s, params_);
+  current_.update(task.current, task.time_s, params_);
+  attempt.outcome = registerIn(reference, task.hints);
   attempt.landmarks = current_.follower.landmarks();
   if (attempt.outcome.registration)
-    for (const auto& [reference, current] : attempt.outcome.registration->matches)
-      attempt.pairs.emplace_back(
-          reference_.follower.landmarks().corners.at(static_cast<std::size_t>(reference)),
-          attempt.landmarks.corners.at(static_cast<std::size_t>(current)));
+    for (const auto& [there, here] : attempt.outcome.registration->matches)
+      attempt.pairs.emplace_back(reference.follower.landmarks().corners.at(static_cast<std::size_t>(there)),
+                                 attempt.landmarks.corners.at(static_cast<std::size_t>(here)));
   return attempt;
 }
 

@@ -6,17 +6,20 @@
 namespace cornerstone {
 namespace {
 
-// Whole cells by which the reference grid must grow on each side to hold the current one.
-GridGeometry unionGeometry(const GridGeometry& reference, const GridGeometry& current,
-                           const Pose2& reference_from_current) {
+// The reference grid, grown by whole cells on each side to hold the others.
+GridGeometry unionGeometry(const GridGeometry& reference, const std::vector<PlacedMap>& others) {
   int left = 0, bottom = 0, right = reference.cols - 1, top = reference.rows - 1;
-  for (const Cell corner : {Cell{0, 0}, Cell{current.cols - 1, 0}, Cell{0, current.rows - 1},
-                            Cell{current.cols - 1, current.rows - 1}}) {
-    const Cell cell = reference.cellAt(reference_from_current * current.centreOf(corner));
-    left = std::min(left, cell.col);
-    right = std::max(right, cell.col);
-    bottom = std::min(bottom, cell.row);
-    top = std::max(top, cell.row);
+  for (const PlacedMap& other : others) {
+    const GridGeometry& grid = other.map.geometry;
+    if (other.map.occupied.empty()) continue;
+    for (const Cell corner :
+         {Cell{0, 0}, Cell{grid.cols - 1, 0}, Cell{0, grid.rows - 1}, Cell{grid.cols - 1, grid.rows - 1}}) {
+      const Cell cell = reference.cellAt(other.reference_from_map * grid.centreOf(corner));
+      left = std::min(left, cell.col);
+      right = std::max(right, cell.col);
+      bottom = std::min(bottom, cell.row);
+      top = std::max(top, cell.row);
+    }
   }
   GridGeometry merged = reference;
   merged.cols = right - left + 1;
@@ -40,20 +43,26 @@ float combine(float a, float b) {
   return pa * pb / (pa * pb + (1 - pa) * (1 - pb));
 }
 
-}  // namespace
-
-GridMap mergeMaps(const GridMap& reference, const GridMap& current, const Pose2& reference_from_current) {
-  if (current.occupied.empty()) return {reference.geometry, reference.occupied.clone()};
-  GridMap merged;
-  merged.geometry = unionGeometry(reference.geometry, current.geometry, reference_from_current);
-  merged.occupied.create(merged.geometry.rows, merged.geometry.cols);
-  const Pose2 current_from_reference = reference_from_current.inverse();
+void add(const PlacedMap& other, GridMap& merged) {
+  const Pose2 map_from_reference = other.reference_from_map.inverse();
   for (int row = 0; row < merged.geometry.rows; ++row)
     for (int col = 0; col < merged.geometry.cols; ++col) {
-      const Eigen::Vector2d point_m = merged.geometry.centreOf({col, row});
-      merged.occupied(row, col) =
-          combine(valueAt(reference, point_m), valueAt(current, current_from_reference * point_m));
+      float& value = merged.occupied(row, col);
+      value = combine(value, valueAt(other.map, map_from_reference * merged.geometry.centreOf({col, row})));
     }
+}
+
+}  // namespace
+
+GridMap mergeMaps(const GridMap& reference, const std::vector<PlacedMap>& others) {
+  GridMap merged;
+  merged.geometry = unionGeometry(reference.geometry, others);
+  merged.occupied = cv::Mat1f(merged.geometry.rows, merged.geometry.cols, kUnseen);
+  const Cell first = merged.geometry.cellAt(reference.geometry.centreOf({0, 0}));
+  reference.occupied.copyTo(
+      merged.occupied({first.col, first.row, reference.geometry.cols, reference.geometry.rows}));
+  for (const PlacedMap& other : others)
+    if (!other.map.occupied.empty()) add(other, merged);
   return merged;
 }
 

@@ -72,22 +72,40 @@ Corner toMessage(const CornerLandmark& corner, double now_s) {
   return message;
 }
 
-MapRegistration toMessage(const RegistrationTracker& tracker, double now_s) {
+MapRegistration toMessage(const SharedFrame& shared, double now_s) {
   MapRegistration message;
-  message.state = toState(tracker.state());
-  message.reason = tracker.reason();
-  if (!tracker.estimate()) return message;
-  const Registration& estimate = *tracker.estimate();
-  message.x = estimate.reference_from_current.x_m;
-  message.y = estimate.reference_from_current.y_m;
-  message.yaw = estimate.reference_from_current.yaw_rad;
-  message.covariance = toRowMajor(tracker.covarianceAt(now_s));
-  message.matched = static_cast<unsigned>(estimate.matches.size());
-  message.rms = estimate.rms_m;
-  message.overlap = estimate.overlap;
-  message.second_best = estimate.second_best;
-  message.evidence_age = now_s - tracker.evidenceTime();
+  message.state = toState(shared.state);
+  message.reason = shared.reason;
+  if (!shared.route || !shared.evidence) return message;
+  const FrameRoute& route = *shared.route;
+  message.via = route.via;
+  message.x = route.reference_from_current.x_m;
+  message.y = route.reference_from_current.y_m;
+  message.yaw = route.reference_from_current.yaw_rad;
+  message.covariance = toRowMajor(route.covariance);
+  message.evidence_age = now_s - route.evidence_time_s;
+  message.matched = static_cast<unsigned>(shared.evidence->matches.size());
+  message.rms = shared.evidence->rms_m;
+  message.overlap = shared.evidence->overlap;
+  message.second_best = shared.evidence->second_best;
   return message;
+}
+
+std::optional<ToldRoute> fromMessage(const MapRegistration& message) {
+  if (message.state != MapRegistration::REGISTERED) return std::nullopt;
+  ToldRoute told;
+  FrameRoute& route = told.route;
+  route.reference_from_current = {message.x, message.y, wrapAngle(message.yaw)};
+  if (!route.reference_from_current.isFinite()) throw InputError("registration: x, y or yaw is not finite");
+  route.covariance =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(message.covariance.data());
+  if (!route.covariance.allFinite() || !(route.covariance.diagonal().minCoeff() >= 0))
+    throw InputError("registration: covariance is none");
+  route.via = message.via;
+  route.evidence_time_s = message.header.stamp.toSec() - message.evidence_age;
+  told.robot_epoch = message.current_epoch;
+  told.reference_epoch = message.reference_epoch;
+  return told;
 }
 
 visualization_msgs::MarkerArray toMarkers(const Landmarks& landmarks, double arm_length_m,

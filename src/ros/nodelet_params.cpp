@@ -19,6 +19,13 @@ void describe(ParamVisitor& visitor, OccupancyMapperParams& params) {
   visitor.field("tf_timeout_s", params.tf_timeout_s);
   visitor.field("publish_period_s", params.publish_period_s);
   visitor.field("tf_period_s", params.tf_period_s);
+  visitor.field("use_tilt", params.use_tilt);
+  visitor.field("load_map", params.load_map);
+  visitor.group("start", [&] {
+    visitor.field("x_m", params.start.x_m);
+    visitor.field("y_m", params.start.y_m);
+    visitor.degrees("yaw_deg", params.start.yaw_rad);
+  });
   visitor.group("scan", [&] { describe(visitor, params.scan); });
   visitor.group("depth", [&] { describe(visitor, params.depth); });
   visitor.group("laser", [&] { describe(visitor, params.laser); });
@@ -35,6 +42,7 @@ void describe(ParamVisitor& visitor, InitialPose& pose) {
 void describe(ParamVisitor& visitor, RegistrationNodeletParams& params) {
   visitor.field("robot", params.robot);
   visitor.field("reference_robot", params.reference_robot);
+  visitor.field("other_robots", params.other_robots);
   visitor.group("frames", [&] { describe(visitor, params.frames); });
   visitor.field("reference_map_frame", params.reference_map_frame);
   visitor.field("period_s", params.period_s);

@@ -37,6 +37,13 @@ Pose2 planarPart(const Eigen::Isometry3d& a_from_b) {
           std::atan2(a_from_b.linear()(1, 0), a_from_b.linear()(0, 0))};
 }
 
+Eigen::Isometry3d tiltOf(const Eigen::Isometry3d& a_from_b) {
+  Eigen::Isometry3d tilt = Eigen::Isometry3d::Identity();
+  tilt.linear() =
+      Eigen::AngleAxisd(-planarPart(a_from_b).yaw_rad, Eigen::Vector3d::UnitZ()) * a_from_b.linear();
+  return tilt;
+}
+
 boost::array<double, 9> toRowMajor(const Eigen::Matrix3d& matrix) {
   boost::array<double, 9> values;
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data()) = matrix;

@@ -1,7 +1,10 @@
 #include "cornerstone/scan/column_scan.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "column_surface.h"
 #include "cornerstone/base/errors.h"
@@ -13,6 +16,7 @@ constexpr double kIntervalSigmas = 2;  // of Beam::near_m and far_m
 
 struct CameraPose {
   Eigen::Matrix3d rotation;
+  Eigen::Vector2d position_m;  // in the base frame
   double height_m = 0;
   double yaw_rad = 0;
 };
@@ -23,24 +27,32 @@ struct ScanInput {
   const ScanParams& params;
 };
 
-// All points of one image column that lie in the height band.
-void collectColumn(const ScanInput& input, int u, std::vector<ColumnPixel>& pixels) {
+using LevelPixels = std::vector<std::vector<ColumnPixel>>;  // a list for each level
+
+// All points of one image column, each in the levels it lies in. Rays change evenly down a column.
+void collectColumn(const ScanInput& input, int u, LevelPixels& by_level) {
   const auto& [image, camera, params] = input;
-  pixels.clear();
+  for (auto& pixels : by_level) pixels.clear();
   const double x = (u - image.centre_x_px) / image.focal_px;
+  const Eigen::Vector3d down = camera.rotation.col(1) / image.focal_px;
+  const Eigen::Vector3d across =
+      camera.rotation * Eigen::Vector3d(x, 0, 1) - image.centre_y_px * down;  // of row 0
   for (int v = 0; v < image.inverse_depth.rows; ++v) {
     const double inverse_depth = image.inverse_depth(v, u);
     if (!(inverse_depth > 0)) continue;
-    const double sigma = image.sigma(v, u);
-    const Eigen::Vector3d ray =
-        camera.rotation * Eigen::Vector3d(x, (v - image.centre_y_px) / image.focal_px, 1);
-    const double height_m = camera.height_m + ray.z() / inverse_depth;
-    const double margin_m =
-        params.height_sigmas * std::abs(ray.z()) * sigma / (inverse_depth * inverse_depth);
-    if (height_m - margin_m < params.z_min_m || height_m + margin_m > params.z_max_m) continue;
-    const double planar = ray.head<2>().norm();
-    if (planar < 1e-3 || inverse_depth * params.min_range_m > planar) continue;
-    pixels.push_back({inverse_depth / planar, sigma / planar, ray.head<2>()});
+    const double sigma = image.sigma(v, u), depth_m = 1 / inverse_depth;
+    const Eigen::Vector3d ray = across + v * down;
+    const double planar = ray.head<2>().norm(), range_m = planar * depth_m;
+    if (planar < 1e-3 || range_m < params.min_range_m) continue;
+    const Eigen::Vector2d point_m = camera.position_m + depth_m * ray.head<2>();
+    if (point_m.squaredNorm() < params.body_radius_m * params.body_radius_m) continue;
+    const double height_m = camera.height_m + ray.z() * depth_m;
+    const double by_depth_m = ray.z() * sigma * depth_m * depth_m,
+                 by_tilt_m = params.tilt_sigma_rad * range_m;
+    const double margin_m = params.height_sigmas * std::sqrt(by_depth_m * by_depth_m + by_tilt_m * by_tilt_m);
+    for (std::size_t i = 0; i < params.levels.size(); ++i)
+      if (height_m - margin_m >= params.levels[i].z_min_m && height_m + margin_m <= params.levels[i].z_max_m)
+        by_level[i].push_back({inverse_depth / planar, sigma / planar, ray.head<2>()});
   }
 }
 
@@ -96,28 +108,57 @@ void dropLonely(std::vector<Beam>& beams) {
 
 }  // namespace
 
+void describe(ParamVisitor& visitor, Level& level) {
+  visitor.field("name", level.name);
+  visitor.field("z_min_m", level.z_min_m);
+  visitor.field("z_max_m", level.z_max_m);
+}
+
+namespace {
+
+void requireValid(const std::vector<Level>& levels) {
+  if (levels.empty()) throw InputError("levels: at least one is needed, the one to drive by");
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::string where = "levels[" + std::to_string(i) + "]/", &name = levels[i].name;
+    if (name.empty() ||
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos ||
+        std::islower(static_cast<unsigned char>(name[0])) == 0)
+      throw InputError(where + "name is '" + name +
+                       "', it must be of small letters, digits and _, a letter first");
+    if (!names.insert(name).second) throw InputError(where + "name '" + name + "' is there twice");
+    requireWithin(levels[i].z_min_m, -100, 100, where + "z_min_m");
+    requireWithin(levels[i].z_max_m, -100, 100, where + "z_max_m");
+    requirePositive(levels[i].z_max_m - levels[i].z_min_m, where + "z_max_m above z_min_m");
+  }
+}
+
+}  // namespace
+
 void describe(ParamVisitor& visitor, ScanParams& params) {
-  visitor.field("z_min_m", params.z_min_m);
-  visitor.field("z_max_m", params.z_max_m);
+  visitor.list("levels", params.levels);
   visitor.field("min_support_px", params.min_support_px);
   visitor.field("min_caution_px", params.min_caution_px);
   visitor.field("agree_sigmas", params.agree_sigmas);
   visitor.field("height_sigmas", params.height_sigmas);
+  visitor.degrees("tilt_sigma_deg", params.tilt_sigma_rad);
   visitor.field("correlated_px", params.correlated_px);
   visitor.field("common_sigma_px", params.common_sigma_px);
   visitor.field("min_range_m", params.min_range_m);
+  visitor.field("body_radius_m", params.body_radius_m);
 }
 
 void requireValid(const ScanParams& params) {
-  requireFinite(params.z_min_m, "z_min_m");
-  requirePositive(params.z_max_m - params.z_min_m, "z_max_m above z_min_m");
+  requireValid(params.levels);
   requireWithin(params.min_support_px, 1, 1000, "min_support_px");
   requireWithin(params.min_caution_px, 1, params.min_support_px, "min_caution_px");
   requireWithin(params.agree_sigmas, 0.5, 10, "agree_sigmas");
   requireWithin(params.height_sigmas, 0, 10, "height_sigmas");
+  requireWithin(params.tilt_sigma_rad, 0, 0.2, "tilt_sigma_deg");
   requireWithin(params.correlated_px, 1, 100, "correlated_px");
   requireWithin(params.common_sigma_px, 0, 2, "common_sigma_px");
   requirePositive(params.min_range_m, "min_range_m");
+  requireWithin(params.body_radius_m, 0, 10, "body_radius_m");
 }
 
 RangeScan scanFromInverseDepth(const InverseDepthImage& image, const Eigen::Isometry3d& base_from_camera,
@@ -127,24 +168,31 @@ RangeScan scanFromInverseDepth(const InverseDepthImage& image, const Eigen::Isom
   if (!base_from_camera.matrix().allFinite()) throw InputError("base_from_camera is not finite");
   const Eigen::Vector3d axis = base_from_camera.linear().col(2);
   if (axis.head<2>().norm() < 0.1) throw InputError("base_from_camera: the camera looks straight up or down");
-  CameraPose camera{base_from_camera.linear(), base_from_camera.translation().z(),
-                    std::atan2(axis.y(), axis.x())};
+  const CameraPose camera{base_from_camera.linear(), base_from_camera.translation().head<2>(),
+                          base_from_camera.translation().z(), std::atan2(axis.y(), axis.x())};
 
   RangeScan scan;
-  scan.base_from_sensor = {base_from_camera.translation().x(), base_from_camera.translation().y(),
-                           camera.yaw_rad};
+  scan.base_from_sensor = {camera.position_m.x(), camera.position_m.y(), camera.yaw_rad};
   scan.correlated_beams = params.correlated_px;
-  std::vector<ColumnPixel> pixels;
+  LevelPixels pixels(params.levels.size());
+  std::vector<std::vector<Beam>> beams(params.levels.size());
   for (int u = image.inverse_depth.cols - 1; u >= 0; --u) {
     collectColumn({image, camera, params}, u, pixels);
-    Beam beam = emptyBeam(image, camera, u);
-    const auto surface = nearestSurface(pixels, image.common_sigma, params);
-    if (surface) answer(*surface, camera, beam);
-    scan.beams.push_back(beam);
+    const Beam empty = emptyBeam(image, camera, u);
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      beams[i].push_back(empty);
+      const auto surface = nearestSurface(pixels[i], image.common_sigma, params);
+      if (surface) answer(*surface, camera, beams[i].back());
+    }
   }
-  std::stable_sort(scan.beams.begin(), scan.beams.end(),
-                   [](const Beam& a, const Beam& b) { return a.bearing_rad < b.bearing_rad; });
-  dropLonely(scan.beams);
+  for (auto& level : beams) {
+    std::stable_sort(level.begin(), level.end(),
+                     [](const Beam& a, const Beam& b) { return a.bearing_rad < b.bearing_rad; });
+    dropLonely(level);
+  }
+  scan.beams = std::move(beams.front());
+  scan.further_levels.assign(std::make_move_iterator(beams.begin() + 1),
+                             std::make_move_iterator(beams.end()));
   return scan;
 }
 

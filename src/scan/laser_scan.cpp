@@ -17,12 +17,21 @@ void answer(double range_m, const LaserParams& params, Beam& beam) {
   beam.clear_m = beam.near_m;
 }
 
+bool onBody(double range_m, double bearing_rad, const Pose2& base_from_sensor, const LaserParams& params) {
+  const Eigen::Vector2d end_m(range_m * std::cos(bearing_rad), range_m * std::sin(bearing_rad));
+  return (base_from_sensor * end_m).norm() < params.body_radius_m;
+}
+
 }  // namespace
 
-void describe(ParamVisitor& visitor, LaserParams& params) { visitor.field("sigma_m", params.sigma_m); }
+void describe(ParamVisitor& visitor, LaserParams& params) {
+  visitor.field("sigma_m", params.sigma_m);
+  visitor.field("body_radius_m", params.body_radius_m);
+}
 
 RangeScan scanFromRanges(const LaserRanges& laser, const LaserParams& params) {
   requirePositive(params.sigma_m, "sigma_m");
+  requireWithin(params.body_radius_m, 0, 10, "body_radius_m");
   requireFinite(laser.angle_min_rad, "angle_min of the laser scan");
   requirePositive(std::abs(laser.angle_increment_rad), "angle_increment of the laser scan");
   requireFinite(laser.range_min_m, "range_min of the laser scan");
@@ -36,7 +45,9 @@ RangeScan scanFromRanges(const LaserRanges& laser, const LaserParams& params) {
     beam.width_rad = std::abs(laser.angle_increment_rad);
     const double range_m = laser.ranges_m[i];
     // A range at range_max is what many drivers send for "nothing": no answer.
-    if (std::isfinite(range_m) && range_m > 0 && range_m >= laser.range_min_m && range_m < laser.range_max_m)
+    const bool valid =
+        std::isfinite(range_m) && range_m > 0 && range_m >= laser.range_min_m && range_m < laser.range_max_m;
+    if (valid && !onBody(range_m, beam.bearing_rad, laser.base_from_sensor, params))
       answer(range_m, params, beam);
     scan.beams.push_back(beam);
   }

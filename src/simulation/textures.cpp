@@ -152,6 +152,18 @@ cv::Mat1f ceiling(cv::RNG& rng) {
   return image;
 }
 
+// Boards and shutters, 3 to 15 cm high, that run along the wall: nothing to tell one place of a row from the
+// next.
+cv::Mat1f stripes(cv::RNG& rng) {
+  cv::Mat1f image(kTexels, kTexels);
+  for (int row = 0; row < kTexels;) {
+    const int end = std::min(row + rng.uniform(4, 20), kTexels);
+    image.rowRange(row, end) = between(rng, 70, 200);
+    row = end;
+  }
+  return image;
+}
+
 cv::Mat1f surface(Material material, cv::RNG& rng) {
   switch (material) {
     case Material::kPlaster:
@@ -178,6 +190,8 @@ cv::Mat1f surface(Material material, cv::RNG& rng) {
       return ceiling(rng);
     case Material::kRobot:
       return grain(rng, 60, 10.0);
+    case Material::kStripes:
+      return stripes(rng);
   }
   throw std::logic_error("makeTexture: unknown material");
 }

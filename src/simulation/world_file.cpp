@@ -27,7 +27,8 @@ Material materialOf(StrictMap& map, const std::string& key) {
       {"plaster", Material::kPlaster}, {"paint", Material::kPaint},     {"concrete", Material::kConcrete},
       {"wood", Material::kWood},       {"metal", Material::kMetal},     {"cabinet", Material::kCabinet},
       {"fabric", Material::kFabric},   {"books", Material::kBooks},     {"poster", Material::kPoster},
-      {"carpet", Material::kCarpet},   {"ceiling", Material::kCeiling}, {"robot", Material::kRobot}};
+      {"carpet", Material::kCarpet},   {"ceiling", Material::kCeiling}, {"robot", Material::kRobot},
+      {"stripes", Material::kStripes}};
   const std::string name = map.text(key);
   const auto found = names.find(name);
   if (found == names.end()) throw InputError(map.nameOf(key) + ": unknown material '" + name + "'");

@@ -20,6 +20,7 @@ constexpr int kLensFlags = cv::CALIB_FIX_K3;
 const cv::TermCriteria kUntil(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-9);
 
 struct Lens {
+  cv::Size image_size_px;
   cv::Mat1d intrinsics, distortion;
   double rms_px = 0;
 };
@@ -38,6 +39,7 @@ Lens lensOf(const CameraViews& camera, cv::Size size, const Chessboard& board) {
   requireEnough(seen.size(), camera.name);
   const std::vector<std::vector<cv::Point3f>> boards(seen.size(), cornersOnBoard(board));
   Lens lens;
+  lens.image_size_px = size;
   cv::Mat intrinsics, distortion;
   std::vector<cv::Mat> rotations, positions;
   lens.rms_px = cv::calibrateCamera(boards, seen, size, intrinsics, distortion, rotations, positions,
@@ -97,10 +99,10 @@ void measureEpipolar(const Shared& shared, const CameraCalibration& reference, c
   report.epipolar_rms_px = std::sqrt(squares / static_cast<double>(there.size()));
 }
 
-CameraCalibration calibrationOf(const std::string& name, const Lens& lens, cv::Size size) {
+CameraCalibration calibrationOf(const std::string& name, const Lens& lens) {
   CameraCalibration camera;
   camera.name = name;
-  camera.image_size_px = size;
+  camera.image_size_px = lens.image_size_px;
   cv::cv2eigen(lens.intrinsics, camera.intrinsics_px);
   camera.distortion.assign(lens.distortion.begin(), lens.distortion.end());
   return camera;
@@ -112,6 +114,16 @@ void requireAlike(const std::vector<CameraViews>& cameras) {
     if (camera.corners.size() != cameras[0].corners.size())
       throw InputError(camera.name + ": " + std::to_string(camera.corners.size()) + " images, but " +
                        std::to_string(cameras[0].corners.size()) + " of " + cameras[0].name);
+}
+
+// Both lenses and the mounting from all boards that both have seen: what one image leaves open, the other's
+// tells.
+void refineTogether(const Shared& shared, Lens& reference, Lens& other, const Chessboard& board) {
+  const std::vector<std::vector<cv::Point3f>> boards(shared.reference.size(), cornersOnBoard(board));
+  cv::Mat rotation, position, essential, fundamental;
+  cv::stereoCalibrate(boards, shared.reference, shared.other, reference.intrinsics, reference.distortion,
+                      other.intrinsics, other.distortion, reference.image_size_px, rotation, position,
+                      essential, fundamental, kLensFlags | cv::CALIB_USE_INTRINSIC_GUESS, kUntil);
 }
 
 struct Mounting {
@@ -155,17 +167,21 @@ std::optional<RigCalibration> calibrateRig(const std::vector<CameraViews>& camer
   for (const CameraViews& camera : cameras) {
     lenses.push_back(lensOf(camera, image_size_px, board));
     rig.rms_px.push_back(lenses.back().rms_px);
-    rig.cameras.push_back(calibrationOf(camera.name, lenses.back(), image_size_px));
   }
-  std::vector<Eigen::Isometry3d> reference_from_camera{Eigen::Isometry3d::Identity()};
   std::vector<Shared> shared;
   for (std::size_t i = 1; i < cameras.size(); ++i) {
     shared.push_back(sharedBoards(cameras[0], cameras[i]));
-    const Mounting mounting = mountingOf(shared.back(), lenses[0], lenses[i], board);
+    refineTogether(shared.back(), lenses[0], lenses[i], board);
+  }
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    rig.cameras.push_back(calibrationOf(cameras[i].name, lenses[i]));
+  std::vector<Eigen::Isometry3d> reference_from_camera{Eigen::Isometry3d::Identity()};
+  for (std::size_t i = 1; i < cameras.size(); ++i) {
+    const Mounting mounting = mountingOf(shared[i - 1], lenses[0], lenses[i], board);
     reference_from_camera.push_back(mounting.reference_from_other);
     PairReport report;
     report.name = cameras[i].name;
-    report.sets = static_cast<int>(shared.back().reference.size());
+    report.sets = static_cast<int>(shared[i - 1].reference.size());
     report.rms_px = mounting.rms_px;
     report.baseline_m = mounting.reference_from_other.translation().norm();
     rig.pairs.push_back(report);

@@ -79,6 +79,9 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
                    disparity.rejection);
   refine(disparity);
   dropSmallSurfaces(disparity);
+  outline_check_.check(*winners_, sweep_input_, disparity.rejection);
+  disparity.disparity_px.setTo(0, disparity.rejection);
+  disparity.sigma_px.setTo(0, disparity.rejection);
 }
 
 int StereoMatcher::windowFor(int image_width_px) const {

@@ -54,6 +54,11 @@ void requireAlongAxis(const CameraCalibration& camera, const cv::Point2d& positi
 
 }  // namespace
 
+Eigen::Vector3d TrinocularRig::pointOf(double col, double row, double disparity_px) const {
+  const double metres_per_px = baseline_m / disparity_px;
+  return {(col - centre_x_px) * metres_per_px, (row - centre_y_px) * metres_per_px, focal_px * metres_per_px};
+}
+
 TrinocularRig makeRig(const CameraCalibration& reference, const CameraCalibration& right,
                       const std::optional<CameraCalibration>& top) {
   requireCalibrated(reference);

@@ -1,6 +1,8 @@
 // calibrate_rig REFERENCE RIGHT --board COLSxROWS --square METRES --out FOLDER [--top TOP]: lenses, mounting
 // and rectification of two or three cameras from images of one chessboard. Each of REFERENCE, RIGHT and TOP
-// is a folder or a pattern; the images of one instant stand at the same place in the order of names.
+// is a folder or a pattern; the images of one instant stand at the same place in the order of names. Or from
+// a recording: --bag FILE --topics REFERENCE,RIGHT[,TOP] [--tolerance SECONDS].
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -8,6 +10,7 @@
 
 #include "cornerstone/base/errors.h"
 #include "cornerstone/stereo/trinocular_rig.h"
+#include "tools/calibration_bag.h"
 #include "tools/calibration_files.h"
 #include "tools/program.h"
 
@@ -16,7 +19,9 @@ namespace {
 
 const char* const kUsage =
     "calibrate_rig REFERENCE RIGHT --board COLSxROWS --square METRES --out FOLDER [--top TOP]\n"
-    "  REFERENCE, RIGHT, TOP: folder of images, or a pattern like 'boards/left*.png'\n"
+    "       calibrate_rig --bag FILE --topics REFERENCE,RIGHT[,TOP] [--tolerance SECONDS] --board ... --out "
+    "...\n"
+    "  REFERENCE, RIGHT, TOP: folder of images, or a pattern like 'boards/left*.png'; topics of the bag\n"
     "  COLSxROWS: inner corners of the chessboard";
 
 Chessboard boardOf(const Arguments& arguments) {
@@ -69,16 +74,38 @@ nlohmann::json writeAll(const RigCalibration& rig, const std::filesystem::path& 
   return result;
 }
 
+std::vector<CameraViews> viewsInFolders(const Arguments& arguments, const Chessboard& board, cv::Size& size) {
+  std::vector<CameraViews> views{viewsAt("reference", arguments.positional(0), board, size),
+                                 viewsAt("right", arguments.positional(1), board, size)};
+  if (arguments.has("top")) views.push_back(viewsAt("top", arguments.text("top"), board, size));
+  return views;
+}
+
+CalibrationBag bagOf(const Arguments& arguments) {
+  CalibrationBag bag;
+  bag.path = arguments.text("bag");
+  std::istringstream topics(arguments.text("topics"));
+  for (std::string topic; std::getline(topics, topic, ',');) bag.topics.push_back(topic);
+  if (bag.topics.size() < 2 || bag.topics.size() > 3)
+    throw InputError("--topics: '" + arguments.text("topics") + "' is not two or three topics with commas");
+  bag.tolerance_s = arguments.number("tolerance", bag.tolerance_s);
+  requireWithin(bag.tolerance_s, 0, 1, "--tolerance");
+  return bag;
+}
+
 Outcome run(int argc, char** argv) {
-  const Arguments arguments(argc, argv, kUsage, 2, {"board", "square", "out", "top"});
+  const bool is_bag = std::any_of(argv, argv + argc, [](const std::string& word) { return word == "--bag"; });
+  const Arguments arguments(
+      argc, argv, kUsage, is_bag ? 0 : 2,
+      is_bag ? std::vector<std::string>{"board", "square", "out", "bag", "topics", "tolerance"}
+             : std::vector<std::string>{"board", "square", "out", "top"});
   for (const char* needed : {"board", "square", "out"})
     if (!arguments.has(needed))
       throw InputError(std::string("--") + needed + " is missing\nusage: " + kUsage);
   const Chessboard board = boardOf(arguments);
   cv::Size size;
-  std::vector<CameraViews> views{viewsAt("reference", arguments.positional(0), board, size),
-                                 viewsAt("right", arguments.positional(1), board, size)};
-  if (arguments.has("top")) views.push_back(viewsAt("top", arguments.text("top"), board, size));
+  const std::vector<CameraViews> views =
+      is_bag ? viewsInBag(bagOf(arguments), board, size) : viewsInFolders(arguments, board, size);
   std::string why;
   const auto rig = calibrateRig(views, size, board, why);
   if (!rig) {

@@ -58,6 +58,38 @@ TEST(Params, WritesWhatItReads) {
   EXPECT_EQ(readParams<OuterParams>(node, "again").count, 3);
 }
 
+struct Shelf {
+  std::vector<InnerParams> boards{{}, {}};
+};
+void describe(ParamVisitor& visitor, Shelf& shelf) { visitor.list("boards", shelf.boards); }
+
+TEST(Params, ListsOfMapsAreReadWrittenAndRefusedByName) {
+  const auto refusal = [](const std::string& yaml) -> std::string {
+    try {
+      readParams<Shelf>(YAML::Load(yaml), "some.yaml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto shelf =
+      readParams<Shelf>(YAML::Load("{boards: [{tilt_deg: 45}, {tilt_deg: 0}, {tilt_deg: 90}]}"), "some.yaml");
+  ASSERT_EQ(shelf.boards.size(), 3U);
+  EXPECT_NEAR(shelf.boards[0].tilt_rad, M_PI / 4, 1e-12);
+  EXPECT_NEAR(shelf.boards[2].tilt_rad, M_PI / 2, 1e-12);
+  const YAML::Node written = writeParams(shelf);
+  EXPECT_EQ(readParams<Shelf>(written, "again").boards.size(), 3U);
+  EXPECT_NEAR(written["boards"][2]["tilt_deg"].as<double>(), 90, 1e-9);
+  EXPECT_TRUE(readParams<Shelf>(YAML::Load("{boards: []}"), "some.yaml").boards.empty());
+  EXPECT_EQ(refusal("{}"), "some.yaml: parameter 'boards' is missing");
+  EXPECT_EQ(refusal("{boards: 3}"), "some.yaml: parameter 'boards' is not a list");
+  EXPECT_EQ(refusal("{boards: [3]}"), "some.yaml: parameter 'boards[0]' is not a map");
+  EXPECT_EQ(refusal("{boards: [{tilt_deg: 1}, {}]}"), "some.yaml/boards[1]: parameter 'tilt_deg' is missing");
+  EXPECT_EQ(refusal("{boards: [{tilt_deg: 1, til: 2}]}"), "some.yaml/boards[0]: unknown parameter 'til'");
+  EXPECT_EQ(refusal("{boards: [{tilt_deg: x}]}"),
+            "some.yaml/boards[0]: parameter 'tilt_deg' is not a number");
+}
+
 TEST(Params, RefusalsNameFileAndKey) {
   EXPECT_EQ(refusalOf(kGood), "");
   EXPECT_EQ(refusalOf("{count: 5, length_m: 2.5, fast: false, name: z, robots: [q]}"),

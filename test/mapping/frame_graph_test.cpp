@@ -79,11 +79,11 @@ Driven drive(const FrameGraphParams& params, const test::TourParams& tour, const
                   (driven.graph.frames().back().odom_from_base.inverse() * step.odom_from_base);
     driven.graph.addFrame(test::scanOf(room, step.map_from_base, needed), step.odom_from_base,
                           {corrected_pose, at(0).covariance});
-    if (driven.graph.solveDue()) driven.graph.adopt(driven.graph.solve().value());
+    if (driven.graph.solveDue()) driven.graph.adopt(solve(driven.graph.beginSolution()).value());
     driven.last_by_odometry = step.odom_from_base;
     driven.last_true = start.inverse() * step.map_from_base;
   }
-  driven.graph.adopt(driven.graph.solve().value());
+  driven.graph.adopt(solve(driven.graph.beginSolution()).value());
   return driven;
 }
 
@@ -131,7 +131,7 @@ TEST(FrameGraph, SensorsWithoutACommonErrorGetNoCalibration) {
     graph.addFrame(scan, pose, {pose, at(0).covariance});
   }
   EXPECT_GT(graph.matchCount(), 6U);
-  EXPECT_EQ(graph.solve().value().calibration.offset_per_m, 0);
+  EXPECT_EQ(solve(graph.beginSolution()).value().calibration.offset_per_m, 0);
 }
 
 TEST(FrameGraph, KeepsTheNewestLooksOfARobotThatStaysAndOneOfARobotThatGoesOn) {
@@ -148,7 +148,9 @@ TEST(FrameGraph, KeepsTheNewestLooksOfARobotThatStaysAndOneOfARobotThatGoesOn) {
   EXPECT_EQ(graph.frames()[1].looks.size(), 1U);
 }
 
-TEST(FrameGraph, WithoutFramesThereIsNoSolution) { EXPECT_FALSE(FrameGraph({}, OdometryNoise{}).solve()); }
+TEST(FrameGraph, WithoutFramesThereIsNoSolution) {
+  EXPECT_FALSE(solve(FrameGraph({}, OdometryNoise{}).beginSolution()));
+}
 
 TEST(FrameGraph, RefusesParametersOutOfRange) {
   FrameGraphParams params;

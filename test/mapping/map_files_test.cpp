@@ -1,6 +1,9 @@
 #include "cornerstone/mapping/map_files.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/serialization/CArchive.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -88,6 +91,56 @@ TEST_F(MapFiles, WhatIsSavedComesBack) {
   EXPECT_NE(again.occupied(5, 6), kUnseen);  // seen and undecided is not unseen
   for (const auto& entry : fs::directory_iterator(folder_))
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+}
+
+TEST_F(MapFiles, MrptsOwnFormComesBack) {
+  GridMap map{{0.05, -1.25, 3.1, 40, 30}, cv::Mat1f(30, 40)};
+  for (int i = 0; i < 1200; ++i) map.occupied(i / 40, i % 40) = static_cast<float>(i) / 1199;
+  map.occupied(3, 4) = kUnseen;
+  map.occupied(5, 6) = 0.5001F;
+  for (const std::string name : {"saved.gridmap", "saved.gridmap.gz"}) {
+    saveMap(map, path(name));
+    const GridMap again = loadMap(path(name));
+    EXPECT_NEAR(again.geometry.origin_x_m, -1.25, 1e-9);
+    EXPECT_NEAR(again.geometry.origin_y_m, 3.1, 1e-9);
+    EXPECT_NEAR(again.geometry.resolution_m, 0.05, 1e-12);
+    ASSERT_EQ(again.occupied.size(), map.occupied.size());
+    EXPECT_LE(cv::norm(again.occupied, map.occupied, cv::NORM_INF), 0.016);
+    EXPECT_EQ(again.occupied(3, 4), kUnseen);
+    EXPECT_GT(again.occupied(5, 6), kUnseen);  // seen and undecided is not unseen
+    saveMap(again, path("twice.gridmap"));
+    EXPECT_EQ(cv::norm(loadMap(path("twice.gridmap")).occupied, again.occupied, cv::NORM_INF), 0);
+  }
+  // As MRPT's own programs read it.
+  mrpt::maps::COccupancyGridMap2D grid;
+  mrpt::io::CFileGZInputStream file(path("saved.gridmap.gz"));
+  auto archive = mrpt::serialization::archiveFrom(file);
+  archive >> grid;
+  EXPECT_NEAR(grid.getCell(39, 29), 0, 0.02);  // MRPT keeps the probability of free
+  EXPECT_NEAR(grid.getCell(0, 0), 1, 0.02);
+  EXPECT_EQ(grid.getCell(4, 3), 0.5F);
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+  fs::resize_file(path("saved.gridmap"), 300);
+  EXPECT_THROW(loadMap(path("saved.gridmap")), InputError);
+  EXPECT_THROW(saveMap(map, path("no/such/folder/x.gridmap")), InputError);
+  EXPECT_THROW(saveMap(map, path("saved.txt")), InputError);
+}
+
+TEST_F(MapFiles, LevelsAreFilesBesideTheFirst) {
+  const GridMap first{{0.05, 0, 0, 2, 2}, cv::Mat1f(2, 2, 0.1F)},
+      ceiling{{0.05, 0, 0, 2, 2}, cv::Mat1f(2, 2, 0.9F)};
+  const std::vector<std::string> names{"obstacles", "ceiling", "shelf"};
+  for (const std::string ending : {"", ".yaml", ".gridmap", ".gridmap.gz"}) {
+    saveLevels({first, ceiling, {}}, path("map" + ending), names);
+    EXPECT_TRUE(fs::exists(path("map_ceiling" + (ending.empty() ? ".yaml" : ending))));
+    const std::vector<GridMap> again = loadLevels(path("map" + ending), names);
+    ASSERT_EQ(again.size(), 3U);
+    EXPECT_NEAR(again[0].occupied(0, 0), 0.1, 0.01);
+    EXPECT_NEAR(again[1].occupied(0, 0), 0.9, 0.01);
+    EXPECT_TRUE(again[2].occupied.empty());
+  }
+  EXPECT_THROW(loadLevels(path("nothing"), names), InputError);
 }
 
 TEST_F(MapFiles, RefusalsNameFileAndField) {

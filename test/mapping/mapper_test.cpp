@@ -127,7 +127,7 @@ TEST(Mapper, ResetBeginsANewEpochAndLoadGoesOnInASavedMap) {
   mapper.reset();
   EXPECT_TRUE(mapper.grid().empty());
   EXPECT_GT(mapper.epoch(), epoch);
-  mapper.load(saved, at);
+  mapper.load({saved}, at);
   EXPECT_EQ(mapper.grid().snapshot().occupied.size(), saved.occupied.size());
   mapper.update(lookFrom(room, at, random), {7, -4, 2});  // odometry starts anywhere
   EXPECT_NEAR(mapper.pose().map_from_base.x_m, at.x_m, 0.05);

@@ -164,6 +164,46 @@ TEST(OccupancyGrid, RefusesBadInputAndStaysAsItWas) {
   EXPECT_THROW(grid.load({{0.1, 0, 0, 2, 2}, cv::Mat1f(2, 2, kUnseen)}), InputError);
 }
 
+TEST(OccupancyGrid, CellsFromTwoToTwentyCentimetres) {
+  for (const double resolution_m : {0.02, 0.05, 0.1, 0.2}) {
+    GridParams params;
+    params.resolution_m = resolution_m;
+    OccupancyGrid grid(params);
+    const double wall_m = 2 + resolution_m / 2;  // the middle of a cell
+    for (int look = 0; look < 4; ++look) grid.insert(wallAt(wall_m, 0.01), {});
+    EXPECT_GT(at(grid, wall_m, resolution_m / 2), kOccupied) << resolution_m;
+    EXPECT_GT(at(grid, wall_m, 1 + resolution_m / 2), kOccupied) << resolution_m;
+    EXPECT_LT(at(grid, wall_m - 2 * resolution_m, resolution_m / 2), kFree) << resolution_m;
+    EXPECT_LT(at(grid, 1, 0), kFree) << resolution_m;
+    EXPECT_EQ(at(grid, wall_m + 3 * resolution_m, resolution_m / 2), kUnseen) << resolution_m;
+    EXPECT_NEAR(grid.geometry().resolution_m, resolution_m, 1e-12);
+  }
+  for (const double resolution_m : {0.019, 0.21, 0.0, -0.05}) {
+    GridParams params;
+    params.resolution_m = resolution_m;
+    EXPECT_THROW(OccupancyGrid{params}, InputError) << resolution_m;
+  }
+}
+
+TEST(OccupancyGrid, TheGeometrySpansAllTilesAfterEveryKindOfChange) {
+  OccupancyGrid grid({}), redrawn({});
+  grid.insert(wallAt(2, 0.02), {});
+  grid.insert(wallAt(2, 0.02), {-20, 0, M_PI});
+  const GridGeometry wide = grid.geometry();
+  EXPECT_LT(wide.origin_x_m, -20);
+  EXPECT_GT(wide.origin_x_m + wide.cols * wide.resolution_m, 2);
+  redrawn.insert(wallAt(2, 0.02), {0, 15, 0});
+  grid.becomeRedrawn(std::move(redrawn));
+  const GridGeometry both = grid.geometry();  // what was there goes out as unseen, it is still spanned
+  EXPECT_EQ(both.origin_x_m, wide.origin_x_m);
+  EXPECT_GT(both.origin_y_m + both.rows * both.resolution_m, 15);
+  EXPECT_EQ(at(grid, -21.98, 0.02), kUnseen);
+  grid.clear();
+  EXPECT_EQ(grid.geometry().cols, 0);
+  grid.insert(wallAt(2, 0.02), {});
+  EXPECT_GE(grid.geometry().origin_x_m, -3.2);
+}
+
 TEST(OccupancyGrid, LoadsWhatItPublished) {
   OccupancyGrid grid({}), again({});
   for (int look = 0; look < 3; ++look) grid.insert(wallAt(2, 0.05), {0.3, 0.2, 1});

@@ -1,7 +1,5 @@
 #!/usr/bin/python3
 """Every node gets messages that no sane sender sends; it names and counts them, lives on, and ends with code 0."""
-import unittest
-
 import cv2
 import numpy
 import rospy
@@ -12,32 +10,8 @@ from stereo_msgs.msg import DisparityImage
 
 import chain
 from cornerstone.msg import MapTile, MapTiles
-from programs import Node, load_parameters, static_mounting
-
-NAN, INF = float("nan"), float("inf")
-WIDTH, HEIGHT, FOCAL_PX, BASELINE_M = 160, 120, 80.0, 0.12
-
-
-def image(encoding="mono8", width=WIDTH, height=HEIGHT, data=None, frame="a/reference_optical"):
-    bytes_per_pixel = {"mono8": 1, "bgr8": 3, "32FC1": 4, "16UC1": 2}.get(encoding, 1)
-    message = Image(width=width, height=height, encoding=encoding, step=width * bytes_per_pixel)
-    message.data = bytes(width * height * bytes_per_pixel) if data is None else data
-    message.header.frame_id = frame
-    return message
-
-
-def info(width=WIDTH, height=HEIGHT, focal=FOCAL_PX, shift=0.0):
-    message = CameraInfo(width=width, height=height, distortion_model="plumb_bob")
-    cx, cy = (width - 1) / 2, (height - 1) / 2
-    message.K = [focal, 0, cx, 0, focal, cy, 0, 0, 1]
-    message.R = [1, 0, 0, 0, 1, 0, 0, 0, 1]
-    message.P = [focal, 0, cx, shift, 0, focal, cy, 0, 0, 0, 1, 0]
-    message.header.frame_id = "a/reference_optical"
-    return message
-
-
-def floats(values, width=WIDTH, height=HEIGHT):
-    return image("32FC1", width, height, numpy.full((height, width), values, numpy.float32).tobytes())
+from programs import static_mounting
+from stage_case import BASELINE_M, FOCAL_PX, INF, NAN, StageCase, floats, image, info
 
 
 def disparity(picture=None, f=FOCAL_PX, baseline=BASELINE_M):
@@ -63,7 +37,7 @@ def tiles(*members, resolution=0.05, epoch=7, version=1, complete=True):
     return MapTiles(robot="a", map_epoch=epoch, version=version, resolution=resolution, complete=complete, tiles=list(members))
 
 
-class BadMessages(unittest.TestCase):
+class BadMessages(StageCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("bad_messages_test")
@@ -82,47 +56,6 @@ class BadMessages(unittest.TestCase):
         transform.transform.translation.x = cls.odom_x
         transform.transform.rotation.w = 1
         cls.broadcaster.sendTransform(transform)
-
-    def start(self, name, config, **changes):
-        load_parameters(config, f"/a/{name}", **changes)
-        self.node = Node(f"{self.programs}/{name}_node", "__ns:=/a")
-        self.addCleanup(self.node.stop)
-        self.stage = f"/a/{name}"
-
-    def publisher(self, topic, kind):
-        publisher = rospy.Publisher(topic, kind, queue_size=50, latch=True)
-        self.addCleanup(publisher.unregister)
-        chain.wait_until(publisher.get_num_connections, f"a subscriber of {topic}", 20)
-        return publisher
-
-    def send(self, publisher, message):
-        if hasattr(message, "header"):
-            message.header.stamp = rospy.Time.now() - rospy.Duration(0.04)
-        publisher.publish(message)
-        rospy.sleep(0.06)
-
-    def dropped(self):
-        return self.diagnostics.count(self.stage, "dropped")
-
-    def wait_for_drop(self, named):
-        def seen():
-            return any(named in key for key in self.diagnostics.of(self.stage) if key.startswith("dropped: "))
-        try:
-            chain.wait_until(seen, f"a dropped message whose cause names '{named}'", 10)
-        except AssertionError as error:
-            raise AssertionError(f"{error}: {self.diagnostics.of(self.stage)}") from None
-
-    def assert_lives(self):
-        self.assertIsNone(self.node.process.poll(), self.node.text()[-3000:])
-        self.assertEqual(self.node.stop(), 0, self.node.text()[-3000:])
-
-    def processed_after(self, publish):
-        """A good message must still be processed after all the bad ones."""
-        before = self.diagnostics.count(self.stage, "processed")
-        def more():
-            publish()
-            return self.diagnostics.count(self.stage, "processed") > before
-        chain.wait_until(more, f"{self.stage} to process something", 10)
 
     def test_mapper_of_disparity(self):
         self.start("occupancy_mapper", "mapper", robot="a", disparity_sigma_px=0.3)
@@ -184,76 +117,11 @@ class BadMessages(unittest.TestCase):
         rospy.sleep(0.2)
         self.assert_lives()
 
-    def start_stereo(self, cameras=("reference", "right"), **changes):
-        """Publishers of the cameras' calibrations, and a function that sends a set of images."""
-        self.start("trinocular_stereo", "stereo", third_camera=len(cameras) > 2, **changes)
-        infos = [self.publisher(f"/a/{c}/camera_info", CameraInfo) for c in cameras]
-        images = [self.publisher(f"/a/{c}/image_rect", Image) for c in cameras]
-
-        def send(*members):
-            stamp = rospy.Time.now()
-            for publisher, message in zip(images, members):
-                message.header.stamp = stamp
-                publisher.publish(message)
-            rospy.sleep(0.06)
-        return infos, send
-
-    def test_stereo_goes_on_when_the_third_camera_stops(self):
-        infos, send = self.start_stereo(("reference", "right", "top"), third_camera_silence_s=0.3)
-        top = info()
-        top.P = [*top.P[:7], FOCAL_PX * BASELINE_M, *top.P[8:]]
-        for publisher, message in zip(infos, (info(), info(shift=-FOCAL_PX * BASELINE_M), top)):
-            publisher.publish(message)
-        rospy.sleep(0.2)
-        self.processed_after(lambda: send(image(), image(), image()))
-        self.assertNotEqual(self.diagnostics.of(self.stage)["level"], 2)
-        rospy.sleep(0.4)
-        self.processed_after(lambda: send(image(), image()))
-        chain.wait_until(lambda: "/a/top is silent" in self.diagnostics.of(self.stage)["message"], "word of the top camera", 10)
-        self.processed_after(lambda: send(image(), image(), image()))
-        chain.wait_until(lambda: self.diagnostics.of(self.stage)["level"] != 2, "the complaint to end", 10)
-        self.assert_lives()
-
-    def test_stereo_images_before_their_calibrations(self):
-        infos, send = self.start_stereo()
-        send(image(), image())
-        send(image(), image())
-        for publisher, message in zip(infos, (info(), info(shift=-FOCAL_PX * BASELINE_M))):
-            publisher.publish(message)
-        chain.wait_until(lambda: self.diagnostics.count(self.stage, "processed") == 2, "both sets that waited", 10)
-        self.assertEqual(self.dropped(), 0, self.diagnostics.of(self.stage))
-        self.assert_lives()
-
-    def test_stereo(self):
-        infos, send = self.start_stereo()
-        send(image(), image())
-        self.wait_for_drop("camera_info: none received yet")
-        good = info(), info(shift=-FOCAL_PX * BASELINE_M)
-        for reference, right, named in ((info(focal=0.0), good[1], "/a/reference/camera_info"),
-                                        (good[0], info(focal=NAN), "/a/right/camera_info"),
-                                        (good[0], good[0], "baseline"),
-                                        (good[0], info(80, 60, shift=-9.6), "size")):
-            for publisher, message in zip(infos, (reference, right)):
-                publisher.publish(message)
-            rospy.sleep(0.2)
-            send(image(), image())
-            self.wait_for_drop(named)
-        for publisher, message in zip(infos, good):
-            publisher.publish(message)
-        rospy.sleep(0.2)
-        for pair in ((image(width=80, height=60), image()), (image(), image("32FC1")), (image("jelly"), image()),
-                     (Image(), image()), (image(), image(data=b"123"))):
-            before = self.dropped()
-            send(*pair)
-            chain.wait_until(lambda b=before: self.dropped() > b, "the pair to be dropped", 10)
-        self.processed_after(lambda: send(image(), image()))
-        self.assert_lives()
-
     def test_registration(self):
         self.start("registration", "registration", robot="b", reference_robot="a")
         own = self.publisher("/a/map_tiles", MapTiles)  # its namespace is /a: both topics are this one
         good = tile()
-        for message, named in ((tiles(), "no tiles"), (tiles(good, resolution=0.0), "resolution"),
+        for message, named in ((tiles(complete=False), "no tiles"), (tiles(good, resolution=0.0), "resolution"),
                                (tiles(good, resolution=NAN), "resolution"), (tiles(tile(png=b"")), "png"),
                                (tiles(tile(png=b"\x89PNG no picture")), "png"), (tiles(tile(png=good.png[:40])), "png"),
                                (tiles(MapTile(col=0, row=0, size=32, png=good.png)), "png"),

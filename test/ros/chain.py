@@ -142,6 +142,11 @@ class Diagnostics:
         with self.lock:
             return dict(self.newest.get(node, {}))
 
+    def forget(self, node):
+        """A node of the same name is about to start."""
+        with self.lock:
+            self.newest.pop(node, None)
+
     def complaints_of(self, node):
         with self.lock:
             return set(self.complaints.get(node, ()))
@@ -192,6 +197,17 @@ class Truth:
         i = bisect.bisect_left(self.times, stamp_s)
         near = [k for k in (i - 1, i) if 0 <= k < len(self.times)]
         return self.poses[min(near, key=lambda k: abs(self.times[k] - stamp_s))]
+
+
+def relative_errors(tf, robots, truths, span_s):
+    """[(m, degrees)] every half second: the second robot in the first one's body frame, by tf against the truth."""
+    (first, second), (stamp, end), errors = robots, span_s, []
+    while stamp < end:
+        known = pose_of_transform(tf.lookup_transform(f"{first}/base_link", f"{second}/base_link", rospy.Time(stamp)).transform)
+        true = truths[0].at(stamp).inverse() * truths[1].at(stamp)
+        errors.append((known.distance_to(true), known.angle_to_deg(true)))
+        stamp += 0.5
+    return errors
 
 
 def between_maps(tf_messages):

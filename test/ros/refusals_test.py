@@ -16,6 +16,13 @@ STAGES = (("trinocular_stereo", "TrinocularStereo", "stereo", "queue_size"),
           ("simulator", "Simulator", "simulator", "rate_factor"))
 
 
+LEVEL = {"name": "obstacles", "z_min_m": 0.15, "z_max_m": 1.5}
+BAD_LEVELS = (([], "levels: at least one"), (3, "'levels' is not a list"), ([3], "'levels[0]' is not a map"),
+              ([LEVEL, LEVEL], "levels[1]/name 'obstacles' is there twice"), ([dict(LEVEL, name="Up there")], "levels[0]/name"),
+              ([dict(LEVEL, z_max_m=0.1)], "levels[0]/z_max_m"), ([{"name": "a", "z_min_m": 0.1}], "levels[0]: parameter 'z_max_m' is missing"),
+              ([dict(LEVEL, zmax=2)], "levels[0]: unknown parameter 'zmax'"))
+
+
 def faults(config, key):
     """Changes that make the parameters wrong, and what the message must name."""
     inner = "cameras" if config == "simulator" else {"stereo": "stereo", "mapper": "scan", "registration": "tracker"}[config]
@@ -67,6 +74,9 @@ class Refusals(unittest.TestCase):
             ("trinocular_stereo", "stereo", {"queue_size": 0}, "queue_size"),
             ("occupancy_mapper", "mapper", {"input": "sonar"}, "input"),
             ("occupancy_mapper", "mapper", {"tf_timeout_s": -1.0}, "tf_timeout_s"),
+            ("occupancy_mapper", "mapper", {"load_map": "/nowhere/map"}, "'load_map': /nowhere/map.yaml"),
+            *[("occupancy_mapper", "mapper", {"scan": dict(parameters_of("mapper")["scan"], levels=levels)}, named)
+              for levels, named in BAD_LEVELS],
             ("registration", "registration", {"robot": ""}, "robot"),
             ("registration", "registration", {"period_s": 0.0}, "period_s"),
             ("simulator", "simulator", {"world": "/nowhere.yaml"}, "/nowhere.yaml"),

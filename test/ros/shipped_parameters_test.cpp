@@ -28,7 +28,9 @@ void expectEqual(const YAML::Node& shipped, const YAML::Node& defaults, const st
     return;
   }
   if (shipped.IsSequence()) {
-    EXPECT_EQ(shipped.as<std::vector<std::string>>(), defaults.as<std::vector<std::string>>()) << key;
+    ASSERT_EQ(shipped.size(), defaults.size()) << key;
+    for (std::size_t i = 0; i < shipped.size(); ++i)
+      expectEqual(shipped[i], defaults[i], key + "[" + std::to_string(i) + "]");
     return;
   }
   double number = 0, expected = 0;

@@ -39,6 +39,19 @@ TEST(TileFollower, ACompleteMessageReplacesAll) {
   EXPECT_NEAR(follower.map().geometry.origin_x_m, 0, 1e-12);
 }
 
+TEST(TileFollower, AMapThatIsResetIsEmptyAtOnce) {
+  TileFollower follower;
+  follower.take(tilesAt(0, 0.2f, 1, 1));
+  MapTiles nothing;
+  nothing.map_epoch = 2;
+  nothing.complete = true;
+  EXPECT_TRUE(follower.take(nothing)) << "the old frame must not live on until the robot sees something";
+  EXPECT_TRUE(follower.empty());
+  EXPECT_EQ(follower.epoch(), 2u);
+  EXPECT_FALSE(follower.take(tilesAt(0, 0.2f, 2, 1)));
+  EXPECT_FALSE(follower.empty());
+}
+
 TEST(TileFollower, AMessageAtFaultChangesNothing) {
   TileFollower follower;
   follower.take(tilesAt(0, 0.2f, 1, 1));

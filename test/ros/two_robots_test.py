@@ -73,20 +73,13 @@ class TwoRobots(unittest.TestCase):
         self.assertEqual(early, [])
 
     def test_tf_agrees_with_the_truth_wherever_robot_b_is(self):
-        truth_a, truth_b = (chain.Truth(self.recorder.of(f"/{robot}/ground_truth")) for robot in ROBOTS)
-        begin, end = self.registered_since().to_sec() + 0.5, truth_a.times[-1] - 0.5
-        checked, worst_m, worst_deg = 0, 0.0, 0.0
-        stamp = begin
-        while stamp < end:
-            known = chain.pose_of_transform(
-                self.tf.lookup_transform("a/base_link", "b/base_link", rospy.Time(stamp)).transform)
-            true = truth_a.at(stamp).inverse() * truth_b.at(stamp)
-            worst_m = max(worst_m, known.distance_to(true))
-            worst_deg = max(worst_deg, known.angle_to_deg(true))
-            last_m, last_deg = known.distance_to(true), known.angle_to_deg(true)
-            checked, stamp = checked + 1, stamp + 0.5
-        self.assertGreaterEqual(checked, 5)
-        print(f"two_robots: {checked} poses, at worst {worst_m:.3f} m and {worst_deg:.2f} degrees from the truth, "
+        truths = [chain.Truth(self.recorder.of(f"/{robot}/ground_truth")) for robot in ROBOTS]
+        errors = chain.relative_errors(self.tf, ROBOTS, truths,
+                                       (self.registered_since().to_sec() + 0.5, truths[0].times[-1] - 0.5))
+        self.assertGreaterEqual(len(errors), 5)
+        worst_m, worst_deg = (max(values) for values in zip(*errors))
+        last_m, last_deg = errors[-1]
+        print(f"two_robots: {len(errors)} poses, at worst {worst_m:.3f} m and {worst_deg:.2f} degrees from the truth, "
               f"{last_m:.3f} m and {last_deg:.2f} degrees in the end")
         self.assertLess(last_m, LAST_ERROR_M)
         self.assertLess(last_deg, LAST_ERROR_DEG)

@@ -45,6 +45,25 @@ TEST(LaserScan, InvalidRangesSayNothing) {
   EXPECT_NEAR(scan.beams[7].range_m, 2, 1e-9);
 }
 
+// No return (+inf), too near (-inf), no reading (NaN): none says that anything is free.
+TEST(LaserScan, TheRobotsOwnBodyAndInfinitiesSayNothing) {
+  LaserRanges laser;
+  laser.ranges_m = {INFINITY, -INFINITY, NAN, 0.25F, 0.4F, 2.0F};
+  laser.angle_min_rad = -0.02;
+  laser.angle_increment_rad = 0.01;
+  laser.range_max_m = 8;
+  laser.base_from_sensor = {-0.1, 0, 0};
+  LaserParams params;
+  params.body_radius_m = 0.2;
+  const RangeScan scan = scanFromRanges(laser, params);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_FALSE(scan.beams[static_cast<std::size_t>(i)].hit) << i;
+    EXPECT_EQ(scan.beams[static_cast<std::size_t>(i)].clear_m, 0) << i;
+  }
+  EXPECT_TRUE(scan.beams[4].hit);  // 0.3 m before the origin
+  EXPECT_TRUE(scan.beams[5].hit);
+}
+
 TEST(LaserScan, UpsideDownStillRises) {
   LaserRanges laser{{1, 2, 3}, 0.1, -0.1, 0.1, 10, {}};
   const RangeScan scan = scanFromRanges(laser, {});

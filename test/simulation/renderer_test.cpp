@@ -136,5 +136,25 @@ TEST_F(RendererTest, WallsHaveFaintTexture) {
   EXPECT_LT(spread[0], 12);
 }
 
+// A wall across the view: rows differ, along a row nothing does.
+TEST(StripedWall, DiffersFromRowToRowOnly) {
+  std::string hall = kHall;
+  hall.replace(hall.find("paint"), 5, "stripes");
+  const RigParams rig;
+  const World world = parseWorld(hall, "hall", ".");
+  Renderer renderer(
+      world, {},
+      {{rig.width_px, rig.height_px}, focalLength(rig), (rig.width_px - 1) / 2.0, (rig.height_px - 1) / 2.0});
+  const cv::Mat1f wall = renderer.render(baseFromCameras(rig)[0])(cv::Rect(40, 20, 80, 40));
+  for (int row = 0; row < wall.rows; ++row) {
+    double low = 0, high = 0;
+    cv::minMaxLoc(wall.row(row), &low, &high);
+    EXPECT_LT(high - low, 1) << row;
+  }
+  cv::Scalar mean, spread;
+  cv::meanStdDev(wall.col(40), mean, spread);
+  EXPECT_GT(spread[0], 15);
+}
+
 }  // namespace
 }  // namespace cornerstone

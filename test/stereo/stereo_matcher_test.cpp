@@ -75,6 +75,29 @@ TEST(StereoMatcher, SurfaceHiddenFromOneCameraIsRefusedOrRight) {
   EXPECT_NEAR(disparity.disparity_px(60, 80), 13, 0.3);
 }
 
+// A textured thing before a wall that shows nothing: only its outline, which the windows reach beyond.
+TEST(StereoMatcher, ThingBeforeABareWallEndsAtItsOutline) {
+  const cv::Rect thing(60, 40, 40, 40);
+  for (const bool third : {false, true}) {
+    cv::RNG random(16);
+    const StereoImages near = viewsOf(Texture(kSize, 1, 30, random), {13, 0}, {2, 1}, random);
+    cv::Mat1f wall(kSize, 40.F);
+    StereoImages images{photographed(wall, 2, 1, random), photographed(wall, 2, 1, random), {}};
+    near.reference(thing).copyTo(images.reference(thing));
+    near.right(thing - cv::Point(13, 0)).copyTo(images.right(thing - cv::Point(13, 0)));
+    if (third) {
+      images.top = photographed(wall, 2, 1, random);
+      near.top(thing + cv::Point(0, 13)).copyTo(images.top(thing + cv::Point(0, 13)));
+    }
+    const Disparity disparity = matched(images);
+    cv::Mat1b answered(disparity.rejection == 0);
+    EXPECT_GT(cv::countNonZero(answered(thing)), 0.95 * thing.area());
+    const cv::Rect with_blur(58, 38, 44, 44);
+    answered(with_blur).setTo(0);
+    EXPECT_LT(cv::countNonZero(answered), third ? 40 : 80);  // the windows alone: 136 and 198 pixels
+  }
+}
+
 TEST(StereoMatcher, BareWallIsRefused) {
   const cv::Mat1f wall(kSize, 130.F);
   for (const std::uint64_t seed : {5u, 15u, 25u}) {

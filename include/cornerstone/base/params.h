@@ -24,6 +24,18 @@ class ParamVisitor {
   void degrees(const std::string& key, double& value_rad);
   // A nested map of parameters.
   virtual void group(const std::string& key, const std::function<void()>& members) = 0;
+  // A list of maps of parameters; an item is described by its own describe().
+  template <typename Item>
+  void list(const std::string& key, std::vector<Item>& items) {
+    const std::size_t count = itemCount(key, items.size());
+    items.resize(count);
+    for (std::size_t i = 0; i < count; ++i) item(key, i, [&] { describe(*this, items[i]); });
+  }
+
+ protected:
+  virtual std::size_t itemCount(const std::string& key,
+                                std::size_t count) = 0;  // of the struct to be filled or written
+  virtual void item(const std::string& key, std::size_t index, const std::function<void()>& members) = 0;
 };
 
 // Reads a struct from a YAML map; `where` (a file, a namespace) starts every message.
@@ -39,7 +51,10 @@ class ParamReader : public ParamVisitor {
   void requireAllRead() const;  // throws InputError with the first key that nobody asked for
 
  private:
+  std::size_t itemCount(const std::string& key, std::size_t count) override;
+  void item(const std::string& key, std::size_t index, const std::function<void()>& members) override;
   YAML::Node required(const std::string& key);
+  void inside(const YAML::Node& inner, const std::string& name, const std::function<void()>& members);
   template <typename T>
   void readScalar(const std::string& key, const char* type, T& value);
 
@@ -60,6 +75,10 @@ class ParamWriter : public ParamVisitor {
   const YAML::Node& node() const { return node_; }
 
  private:
+  std::size_t itemCount(const std::string& key, std::size_t count) override;
+  void item(const std::string& key, std::size_t index, const std::function<void()>& members) override;
+  YAML::Node written(const std::function<void()>& members);
+
   YAML::Node node_{YAML::NodeType::Map};
 };
 

@@ -23,7 +23,8 @@ class EvidenceScale {
   explicit EvidenceScale(double prior_occupied);
   static double logOddsOf(EvidenceCell cell) { return -cell / kStepsPerUnit; }
   static EvidenceCell cellOf(double log_odds);  // nearest step, held within what a cell can hold
-  double occupied(EvidenceCell cell) const { return occupied_[index(cell)]; }   // P
+  double occupied(EvidenceCell cell) const { return occupied_[index(cell)]; }  // P
+  double hazard(EvidenceCell cell) const { return hazard_[index(cell)]; }  // of half a cell: 1 - sqrt(1 - P)
   float published(EvidenceCell cell) const { return published_[index(cell)]; }  // kUnseen exactly for 0
   EvidenceCell fromPublished(float probability) const;                          // 0 only for kUnseen exactly
   double logOddsFor(double occupied) const;                                     // l of a probability P
@@ -34,6 +35,7 @@ class EvidenceScale {
   static std::size_t index(EvidenceCell cell) { return static_cast<std::size_t>(cell + kLargest); }
   double prior_log_odds_;
   std::array<double, 2 * kLargest + 1> occupied_;
+  std::array<double, 2 * kLargest + 1> hazard_;
   std::array<float, 2 * kLargest + 1> published_;
 };
 

@@ -11,16 +11,9 @@
 #include <vector>
 
 #include "cornerstone/base/params.h"
-#include "cornerstone/mapping/frame_match.h"
-#include "cornerstone/mapping/odometry_filter.h"
-
-namespace ceres {
-class Problem;
-}
+#include "cornerstone/mapping/graph_solver.h"
 
 namespace cornerstone {
-
-class OdometryStepCost;
 
 struct FrameGraphParams {
   bool use = true;                          // false: no frames are kept, and the map is never drawn anew
@@ -38,19 +31,13 @@ struct FrameGraphParams {
   double fitted_step_sigma_m = 0.02;
   double fitted_step_sigma_rad = 0.5 * M_PI / 180;
   int solve_after_frames = 10;    // 2 m of way
-  int redraw_looks_per_scan = 4;  // looks that are drawn anew with each scan: some 4 ms
+  int redraw_looks_per_scan = 2;  // looks drawn anew with each scan, of those that came meanwhile
   double redraw_shift_m = 0.01;   // a map that is off by less is left as it is: a fifth of a cell
   WallPieceParams piece;
   FrameMatchParams match;
 };
 void describe(ParamVisitor& visitor, FrameGraphParams& params);
 void requireValid(const FrameGraphParams& params);  // throws InputError naming the parameter
-
-struct GraphSolution {
-  std::vector<Pose2> map_from_base;  // of each frame
-  Eigen::Vector3d rates = Eigen::Vector3d::Zero();
-  ScanCalibration calibration;
-};
 
 class FrameGraph {
  public:
@@ -64,7 +51,7 @@ class FrameGraph {
   // they say of things that came or went must not be lost when the map is drawn anew.
   void addLook(const RangeScan& scan, const Pose2& odom_from_base);
   bool solveDue() const;
-  std::optional<GraphSolution> solve();  // none: there was no frame, or no finite solution
+  GraphProblem beginSolution();  // of all frames so far: to be solved here or beside, then adopted
   // Poses of the frames that the solution knows, and of those added since, moved as the last of these.
   void adopt(const GraphSolution& solution);
 
@@ -73,24 +60,13 @@ class FrameGraph {
   std::size_t matchCount() const { return matches_.size(); }
 
  private:
-  struct Match {
-    std::size_t earlier = 0, later = 0;
-    FrameMatch match;
-  };
-  struct Blocks {
-    double* earlier;
-    double* later;
-    double* shared;  // rates or calibration
-  };
-  void addStep(ceres::Problem& problem, const OdometryStepCost& cost, const Blocks& blocks) const;
-  void addMatch(ceres::Problem& problem, const FrameMatch& match, double weight, const Blocks& blocks) const;
-  PoseEstimate placeNewest(const PoseEstimate& prior, std::size_t first_match) const;
+  GraphProblem problem() const;
   std::vector<std::size_t> framesNearby(const Pose2& map_from_base) const;
 
   FrameGraphParams params_;
   OdometryNoise odometry_;
   std::vector<KeyFrame> frames_;
-  std::vector<Match> matches_;
+  std::vector<GraphMatch> matches_;
   Eigen::Vector3d rates_ = Eigen::Vector3d::Zero();
   ScanCalibration calibration_;
   std::size_t solved_frames_ = 0;

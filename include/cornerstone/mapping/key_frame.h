@@ -1,7 +1,7 @@
 // A look that is kept, with what other looks are compared with: short straight pieces of wall.
 #pragma once
 
-#include <deque>
+#include <memory>
 #include <vector>
 
 #include "cornerstone/base/params.h"
@@ -20,7 +20,8 @@ struct WallPiece {
 };
 
 struct KeptLook {
-  RangeScan scan;  // as it was seen, not corrected
+  std::shared_ptr<const RangeScan>
+      scan;  // as it was seen, not corrected; a redraw beside the mapper reads it, too
   Pose2 frame_from_base;
 };
 
@@ -33,7 +34,7 @@ struct KeyFrame {
   double calibration_sigma_per_m = 0;
   std::vector<double> bearings_rad;  // of the pieces, rising
   std::vector<WallPiece> pieces;     // one a beam
-  std::deque<KeptLook> looks;        // the first is the frame's own
+  std::vector<KeptLook> looks;       // the first is the frame's own
 };
 
 struct WallPieceParams {

@@ -11,10 +11,11 @@
 // not move.
 #pragma once
 
+#include <future>
 #include <optional>
 
+#include "cornerstone/mapping/local_map.h"
 #include "cornerstone/mapping/map_redraw.h"
-#include "cornerstone/mapping/occupancy_grid.h"
 #include "cornerstone/mapping/odometry_filter.h"
 #include "cornerstone/mapping/scan_fit.h"
 
@@ -40,15 +41,21 @@ struct MapperUpdate {
 
 class Mapper {
  public:
-  explicit Mapper(const MapperParams& params);  // throws InputError naming a parameter out of range
+  // levels: of the scans to come. Throws InputError naming a parameter out of range.
+  explicit Mapper(const MapperParams& params, std::size_t levels = 1);
   // odom_from_base: at the scan's instant; not finite: InputError and nothing changes.
   MapperUpdate update(const RangeScan& scan, const Pose2& odom_from_base);
   // Empties the map and starts it at the robot's pose in odom; a new epoch.
   void reset();
-  // Goes on in a saved map (a new epoch) in which the robot's next scan is taken at map_from_base.
-  void load(const GridMap& map, const Pose2& map_from_base);
+  // Goes on in a saved map (a new epoch), one grid a level, in which the robot's next scan is taken at
+  // map_from_base. Levels that are empty or missing begin anew.
+  void load(const std::vector<GridMap>& levels, const Pose2& map_from_base);
 
-  const OccupancyGrid& grid() const { return grid_; }
+  const std::vector<LocalMap>& localMaps() const { return local_maps_; }
+  // One level of all local maps, in the map's frame.
+  GridMap map(std::size_t level = 0) const { return composed(local_maps_, level); }
+  // Of the current local map.
+  const OccupancyGrid& grid(std::size_t level = 0) const { return local_maps_.back().grid(level); }
   const Pose2& mapFromOdom() const { return map_from_odom_; }
   PoseEstimate pose() const { return filter_.pose(); }
   const OdometryFilter& odometry() const { return filter_; }
@@ -61,16 +68,19 @@ class Mapper {
   void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
   void straighten();                                                  // the map, by what the graph knows
   void redraw();
-  bool movesTheMap(const GraphSolution& solution) const;
   LookMotion motion() const;  // since the last look that was inserted
   double newShare(const RangeScan& scan) const;
 
   MapperParams params_;
-  OccupancyGrid grid_;
+  LocalMap& current() { return local_maps_.back(); }
+
+  std::vector<LocalMap> local_maps_;  // the last is the current one; one for now
   Pose2 map_from_odom_;
   OdometryFilter filter_;
   FrameGraph graph_;
-  std::optional<MapRedraw> redraw_;  // under way
+  std::future<std::optional<MapRedraw>> beside_;  // solves and draws in a thread of its own
+  int scans_to_take_up_ = 0;
+  std::optional<MapRedraw> redraw_;  // its last looks
   int redraws_ = 0;
   bool loaded_ = false;
   std::optional<Pose2> last_odom_;      // odom_from_base of the last scan

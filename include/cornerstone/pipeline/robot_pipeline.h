@@ -37,7 +37,7 @@ class RobotPipeline {
   MapperUpdate update(const StereoImages& images, const Pose2& odom_from_base);
 
   const Mapper& mapper() const { return mapper_; }
-  GridMap map() const { return mapper_.grid().snapshot(); }
+  GridMap map() const { return mapper_.map(); }
   Landmarks landmarks() const { return detectLandmarks(map(), params_.landmarks); }
 
  private:

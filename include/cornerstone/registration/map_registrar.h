@@ -1,8 +1,9 @@
-// Attempts to register one robot's map in another's, again and again as both grow. What an attempt learns of
-// a map is kept for the next one: landmarks are looked for only where the map changed. No ROS, no clock of
-// its own, one attempt at a time: it may run in a thread of its own.
+// Attempts to register one robot's map in those of others, again and again as all grow. What an attempt
+// learns of a map is kept for the next one: landmarks are looked for only where the map changed. No ROS, no
+// clock of its own, one attempt at a time: it may run in a thread of its own.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@ struct RegistrationTask {
   GridMap current;
   RegistrationHints hints;
   double time_s = 0;
+  std::string reference_robot;  // whose map the reference is: what is known of it is kept under this name
   bool reference_anew = false;  // the map began anew: nothing known of the old one holds
   bool current_anew = false;
 };
@@ -37,7 +39,7 @@ class MapRegistrar {
   RegistrationAttempt attempt(const RegistrationTask& task);
 
  private:
-  // What is known of one map.
+  // What is known of one robot's map.
   struct Side {
     LandmarkFollower follower;
     std::optional<MapEvidence> evidence;
@@ -45,10 +47,11 @@ class MapRegistrar {
     void update(const GridMap& map, double time_s, const RegistrationParams& params);
     PreparedMap prepared() const { return {follower.landmarks(), *evidence}; }
   };
+  RegistrationOutcome registerIn(const Side& reference, const RegistrationHints& hints) const;
 
   LandmarkParams landmark_params_;
   RegistrationParams params_;
-  Side reference_;
+  std::map<std::string, Side> references_;  // by robot
   Side current_;
 };
 

@@ -4,12 +4,13 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include <optional>
 #include <vector>
 
 #include "cornerstone/CornerArray.h"
 #include "cornerstone/MapRegistration.h"
 #include "cornerstone/landmarks/detect_corners.h"
-#include "cornerstone/registration/registration_tracker.h"
+#include "cornerstone/registration/robot_links.h"
 
 namespace cornerstone {
 
@@ -17,7 +18,10 @@ namespace cornerstone {
 Corner toMessage(const CornerLandmark& corner, double now_s);
 
 // The state, pose, covariance and evidence; names, frames and epochs are the caller's to fill in.
-MapRegistration toMessage(const RegistrationTracker& tracker, double now_s);
+MapRegistration toMessage(const SharedFrame& shared, double now_s);
+// What another robot's message tells of its map; empty: it is not registered. InputError naming the field at
+// fault.
+std::optional<ToldRoute> fromMessage(const MapRegistration& message);
 
 // Edges as points (namespace "edges") and each corner as its two arms (namespace "corners"), coloured by
 // kind.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cornerstone/landmarks/detect_corners.h"
 #include "cornerstone/mapping/mapper.h"
@@ -40,6 +41,13 @@ struct OccupancyMapperParams {  // config/mapper.yaml
   double publish_period_s =
       0.5;                    // of the map and its tiles; at most 2 Hz keeps the picture fresh at little cost
   double tf_period_s = 0.05;  // of map -> odom
+  // Pitch and roll of the robot from its odometry (an IMU's, as a rule); false where they are noise, and on
+  // ramps that the robot shall not take for walls.
+  bool use_tilt = true;
+  // A saved map to go on in, and where the robot stands in it at the start; empty: an empty map, whose frame
+  // is odom at the first scan. A reset begins there again.
+  std::string load_map;
+  Pose2 start;
   ScanParams scan;
   DepthNoise depth;
   LaserParams laser;
@@ -58,6 +66,9 @@ void describe(ParamVisitor& visitor, InitialPose& pose);
 struct RegistrationNodeletParams {  // config/registration.yaml
   std::string robot = "robot";
   std::string reference_robot;  // empty, or this robot itself: it is the reference and registers to nobody
+  // Robots that may stand in between where this one's map has nothing in common with the reference robot's,
+  // and whose maps merged_map holds, too.
+  std::vector<std::string> other_robots;
   FrameNames frames;
   std::string reference_map_frame;  // empty: <reference robot>/map
   double period_s = 1.0;            // between attempts; maps change little in less

@@ -10,17 +10,17 @@ namespace cornerstone {
 
 class TileFollower {
  public:
-  // True: the robot's map began anew (another epoch), all older tiles are gone. InputError naming the field
-  // at fault, and nothing changes.
+  // True: the robot's map began anew (another epoch), all older tiles are gone. A complete message without
+  // tiles is an empty map. InputError naming the field at fault, and nothing changes.
   bool take(const MapTiles& message);
   bool empty() const { return !tiles_; }
   GridMap map() const { return tiles_ ? tiles_->assemble() : GridMap{}; }
-  std::uint32_t epoch() const { return epoch_; }
-  std::uint32_t version() const { return version_; }  // of the newest tiles
+  std::uint32_t epoch() const { return epoch_.value_or(0); }  // 0: nothing was heard yet
+  std::uint32_t version() const { return version_; }          // of the newest tiles
 
  private:
   std::optional<TileMap> tiles_;
-  std::uint32_t epoch_ = 0;
+  std::optional<std::uint32_t> epoch_;
   std::uint32_t version_ = 0;
 };
 

@@ -25,6 +25,10 @@ geometry_msgs::TransformStamped toStamped(const Pose2& parent_from_child, const 
 // The planar part of a motion: position and heading of b's x axis in a.
 Pose2 planarPart(const Eigen::Isometry3d& a_from_b);
 
+// What planarPart leaves of a motion's turn: pitch and roll of b, without any shift. Position and height are
+// left out: odometry's height drifts.
+Eigen::Isometry3d tiltOf(const Eigen::Isometry3d& a_from_b);
+
 boost::array<double, 9> toRowMajor(const Eigen::Matrix3d& matrix);
 Eigen::Matrix3d fromRowMajor(const boost::array<double, 9>& values);
 

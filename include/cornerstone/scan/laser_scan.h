@@ -1,5 +1,6 @@
 // From the ranges of a planar laser to a range scan. Ranges that are not valid say nothing: a laser gives no
-// answer for glass, black walls and the open alike.
+// answer for glass, black walls and the open alike. That holds for +inf, too, REP 117's "nothing within
+// reach": what clears space is a surface that was seen, never its absence.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,8 @@
 namespace cornerstone {
 
 struct LaserParams {
-  double sigma_m = 0.02;  // of one range: usual for indoor lasers
+  double sigma_m = 0.02;       // of one range: usual for indoor lasers
+  double body_radius_m = 0.2;  // beams that end this near to the base's origin show the robot itself
 };
 void describe(ParamVisitor& visitor, LaserParams& params);
 

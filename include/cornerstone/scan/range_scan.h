@@ -21,11 +21,17 @@ struct Beam {
 
 struct RangeScan {
   Pose2 base_from_sensor;
-  std::vector<Beam> beams;      // rising bearing
+  std::vector<Beam> beams;  // rising bearing; of the level that robots drive by
+  // What the same look shows in further height bands (column_scan.h), beams as above; lasers have none.
+  std::vector<std::vector<Beam>> further_levels;
   double correlated_beams = 1;  // neighbours that share one error (stereo: the correlation window's width)
   // Standard deviation, 1/m, of the error that the inverse depths of all looks of this sensor share
   // (scan_calibration.h); 0: none is known of.
   double calibration_sigma_per_m = 0;
 };
+
+// The look as a sensor of one level alone would have it; level 0 is `beams`, 1 the first of further_levels.
+// Without beams where the look has no such level.
+RangeScan levelOf(const RangeScan& scan, std::size_t level);
 
 }  // namespace cornerstone

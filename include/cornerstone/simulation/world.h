@@ -26,7 +26,8 @@ enum class Material {
   kPoster,
   kCarpet,
   kCeiling,
-  kRobot
+  kRobot,
+  kStripes
 };
 
 // An upright prism on a convex polygon (counter-clockwise).

@@ -22,6 +22,7 @@ class GradientFeatures {
 
   void compute(const cv::Mat1b& image);
   const cv::Mat1b& channel(std::size_t index) const { return channels_[index]; }
+  const cv::Mat1b& smooth() const { return smooth_; }
   cv::Size size() const { return channels_[0].size(); }
   // Sum over the channels of the absolute differences.
   int costAt(cv::Point here, const GradientFeatures& other, cv::Point there) const;

@@ -2,11 +2,12 @@
 // that turns the raw images into those of a rig (trinocular_rig.h): right along the image rows, the third
 // camera along the rows or the columns. Board and mounting in m, frames optical (z forward, x right, y down).
 //
-// Each camera's lens is solved from all its boards (Zhang, 2000; cv::calibrateCamera), then the mounting of
-// each secondary camera from all boards that both have seen (cv::stereoCalibrate). A common frame is chosen
-// whose x axis is the baseline to the right camera and whose y axis is as near as can be to the third
-// camera's; what their angle lacks of 90 degrees is shared by both and reported as epipolar error. Fails
-// where too few boards are seen by both cameras of a pair, or where the boards contradict each other.
+// Each camera's lens is solved from all its boards (Zhang, 2000; cv::calibrateCamera); from there, pair by
+// pair, both lenses and the mounting together from all boards that both have seen (cv::stereoCalibrate), and
+// at last each mounting with the lenses that this ended with. A common frame is chosen whose x axis is the
+// baseline to the right camera and whose y axis is as near as can be to the third camera's; what their angle
+// lacks of 90 degrees is shared by both and reported as epipolar error. Fails where too few boards are seen
+// by both cameras of a pair, or where the boards contradict each other.
 #pragma once
 
 #include <optional>

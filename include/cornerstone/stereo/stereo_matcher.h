@@ -10,6 +10,7 @@
 #include "cornerstone/base/params.h"
 #include "cornerstone/stereo/cost_sweep.h"
 #include "cornerstone/stereo/disparity.h"
+#include "cornerstone/stereo/outline_check.h"
 #include "cornerstone/stereo/subpixel.h"
 #include "cornerstone/stereo/surfaces.h"
 #include "cornerstone/stereo/validation.h"
@@ -38,9 +39,9 @@ struct StereoParams {
   // answers on photographs; double: a hundredth fewer answers there.
   double smallest_margin_share = 0.3;
   // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px
-  // (else surfaces grow over their surroundings). 1: any better; 3: nearly every pixel beside an edge is
-  // dropped, thin things with it.
-  double smallest_edge_cost_ratio = 1.2;
+  // (else surfaces grow over their surroundings). 1: any better, a tenth more phantom columns; 2: a
+  // twentieth fewer answers, thin things first.
+  double smallest_edge_cost_ratio = 1.1;
   // Mean cost of the window's pixels at the winner, of that of unrelated pixels. Lower: fewer answers through
   // noise.
   double largest_own_share = 0.8;
@@ -52,9 +53,10 @@ struct StereoParams {
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges. 0: that of
   // the window.
   int subpixel_support_px = 0;
-  // A surface with a smaller share of the image's pixels is dropped: 0.1% is 19 px of 160x120. A chair leg
-  // 2 px wide and 30 high is 60 px; what the margin leaves of chance matches is a few pixels.
-  double smallest_surface_share = 0.001;
+  // A surface with a smaller share of the image's pixels is dropped: 0.05% is 9 px of 160x120. A chair leg
+  // 2 px wide and 30 high is 60 px; what the margin leaves of chance matches is a few pixels, and
+  // smallest_strong_windows drops most of them.
+  double smallest_surface_share = 0.0005;
   // Answers that no bare wall or pattern gives: their margin, as above, times the lead of their window's cost
   // over that of any other disparity, in standard deviations of the cost. Half: blobs on a tenth of bare
   // walls, wrong disparities on patterns; double: a hundredth fewer answers.
@@ -91,6 +93,7 @@ class StereoMatcher {
   Validator validator_;
   SubpixelRefiner refiner_;
   SurfaceFilter surfaces_;
+  OutlineCheck outline_check_;
   cv::Mat1b verdicts_;
 };
 

@@ -6,6 +6,7 @@
 // (-1, 0) for the right camera, (0, +1) for a top camera with the same baseline.
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -23,6 +24,8 @@ struct TrinocularRig {
   std::optional<cv::Point2d> top_shift;  // empty: two cameras
 
   double rangeOf(double disparity_px) const { return focal_px * baseline_m / disparity_px; }
+  // What reference pixel (col, row) shows, in the reference camera's optical frame.
+  Eigen::Vector3d pointOf(double col, double row, double disparity_px) const;
 };
 
 // Throws InputError that names the camera and the field: not calibrated (zeros), NaN, unequal sizes or focal
