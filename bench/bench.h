@@ -15,6 +15,8 @@ void mappingPart();
 void mappingSizePart();
 void registrationPart();
 void registrationLimitsPart();
+void registrationCostPart();
+void registrationMeetingPart(int seeds);
 
 inline double elapsed_ms(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();

@@ -1,5 +1,7 @@
 // All parts, as Markdown on standard output; scripts/bench.sh makes bench/RESULTS.md of it.
-// usage: cornerstone_bench [--stereo-only] [--stereo-sets FOLDER...]
+// usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]
+#include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <opencv2/core.hpp>
 #include <string>
@@ -11,12 +13,17 @@
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   std::vector<std::string> words(argv + 1, argv + argc), folders;
+  int seeds = 1;  // runs a world of the robots that meet
+  if (words.size() > 1 && words[0] == "--seeds") {
+    seeds = std::atoi(words[1].c_str());
+    words.erase(words.begin(), words.begin() + 2);
+  }
   const auto is_sets = std::find(words.begin(), words.end(), "--stereo-sets");
   if (is_sets != words.end()) folders.assign(is_sets + 1, words.end());
   words.erase(is_sets, words.end());
   const bool stereo_only = words == std::vector<std::string>{"--stereo-only"};
   if (!words.empty() && !stereo_only) {
-    std::fputs("usage: cornerstone_bench [--stereo-only] [--stereo-sets FOLDER...]\n", stderr);
+    std::fputs("usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]\n", stderr);
     return 2;
   }
   try {
@@ -27,6 +34,8 @@ int main(int argc, char** argv) {
     cornerstone::bench::mappingSizePart();
     cornerstone::bench::registrationPart();
     cornerstone::bench::registrationLimitsPart();
+    cornerstone::bench::registrationCostPart();
+    cornerstone::bench::registrationMeetingPart(seeds);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench: %s\n", error.what());
     return 1;

@@ -129,14 +129,14 @@ mrpt::maps::CMultiMetricMap withPoints(const GridMap& map, bool with_points) {
 std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, MrptAligner kind) {
   // The aligner keeps features by the address of a map: every map is kept, so that no address comes twice.
   static std::list<mrpt::maps::CMultiMetricMap> kept;
-  const bool with_points = kind != MrptAligner::kGrids;
+  const bool with_points = kind == MrptAligner::kGridsAndPoints || kind == MrptAligner::kMoreFeatures;
   const auto& m1 = kept.emplace_back(withPoints(reference, with_points));
   const auto& m2 = kept.emplace_back(withPoints(current, with_points));
   mrpt::math::CMatrixDouble33 covariance;
   covariance.setDiagonal(std::vector<double>{1e4, 1e4, 1e2});
   mrpt::slam::CGridMapAligner aligner;
   aligner.setMinLoggingLevel(mrpt::system::LVL_ERROR);
-  if (kind == MrptAligner::kMoreFeatures) {
+  if (kind == MrptAligner::kMoreFeatures || kind == MrptAligner::kMoreFeaturesOnGrids) {
     aligner.options.featsPerSquareMeter = 0.05F;
     aligner.options.ransac_minSetSizeRatio = 0.1F;
   }

@@ -41,7 +41,8 @@ mrpt::maps::COccupancyGridMap2D toMrpt(const GridMap& map);
 enum class MrptAligner {
   kGrids,           // default options
   kGridsAndPoints,  // the occupied cells also as a point map, which its last step (ICP) needs
-  kMoreFeatures     // the same with three times the features and half the consensus
+  kMoreFeatures,    // the same with three times the features and half the consensus
+  kMoreFeaturesOnGrids
 };
 std::optional<Pose2> alignMrpt(const GridMap& reference, const GridMap& current, MrptAligner aligner);
 

@@ -91,7 +91,7 @@ std::vector<std::string> refusals;  // cornerstone's own words
 // `solvable`: false for maps of different buildings, which have no true pose.
 void compare(const std::string& pair, const PlacedMap& reference, const PlacedMap& current, bool solvable) {
   const Pose2 truth = reference.world_from_map.inverse() * current.world_from_map;
-  Answers ours, bare, mrpt, tuned, features;
+  Answers ours, bare, mrpt, tuned_bare, tuned, features;
   std::string refusal;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     std::optional<Pose2> answer;
@@ -109,6 +109,8 @@ void compare(const std::string& pair, const PlacedMap& reference, const PlacedMa
     };
     peer(bare, [&] { return alignMrpt(reference.map, current.map, MrptAligner::kGrids); });
     peer(mrpt, [&] { return alignMrpt(reference.map, current.map, MrptAligner::kGridsAndPoints); });
+    peer(tuned_bare,
+         [&] { return alignMrpt(reference.map, current.map, MrptAligner::kMoreFeaturesOnGrids); });
     peer(tuned, [&] { return alignMrpt(reference.map, current.map, MrptAligner::kMoreFeatures); });
     peer(features, [&] { return alignFeatures(reference.map, current.map); });
   }
@@ -124,7 +126,8 @@ void compare(const std::string& pair, const PlacedMap& reference, const PlacedMa
   row("cornerstone", ours);
   row("CGridMapAligner, grids alone", bare);
   row("CGridMapAligner, grids and points", mrpt);
-  row("CGridMapAligner, grids and points, more features", tuned);
+  row("CGridMapAligner, more features, grids alone", tuned_bare);
+  row("CGridMapAligner, more features, grids and points", tuned);
   row("AKAZE features, affine RANSAC", features);
   if (!refusal.empty()) refusals.push_back(pair + ": " + refusal);
 }
@@ -159,7 +162,7 @@ void registrationPart() {
       "options, "
       "the likeliest mode of its answer; its time contains the copy into MRPT's maps; with the occupied "
       "cells as a point "
-      "map beside the grid it checks its modes by ICP, on grids alone it does not; its third row takes three "
+      "map beside the grid it checks its modes by ICP, on grids alone it does not; its other rows take three "
       "times the default's features (0.05 a square metre) and half the consensus (0.1). AKAZE: the "
       "map-merging recipe, features of "
       "the maps as grey pictures, matched with a ratio of 0.8, at least 12 inliers of a similarity of scale "

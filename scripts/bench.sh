@@ -2,12 +2,18 @@
 # Measures cornerstone beside its peers (OpenCV's stereo, MRPT's insertion and aligner) and rewrites bench/RESULTS.md.
 # One thread; some minutes. The build folder is left as it was, without the benchmark program.
 #
-# usage: scripts/bench.sh [--stereo-sets FOLDER...]   FOLDER: images of two or three cameras with true disparity, with
+# usage: scripts/bench.sh [--seeds N] [--stereo-sets FOLDER...]   N: runs a world of the robots that meet (1; 20 take
+# an hour or more); FOLDER: images of two or three cameras with true disparity, with
 # reference.png, right.png, perhaps top.png, disparity.png (256 x px, 0 unknown) and visible.png (seen by all cameras)
 set -euo pipefail
 sets=()
+seeds=1
+if [ "${1:-}" = "--seeds" ] && [ $# -gt 1 ]; then
+  seeds=$2
+  shift 2
+fi
 if [ $# -gt 0 ]; then
-  if [ "$1" != "--stereo-sets" ] || [ $# -lt 2 ]; then sed -n '5,6p' "$0" >&2; exit 2; fi
+  if [ "$1" != "--stereo-sets" ] || [ $# -lt 2 ]; then sed -n '5,7p' "$0" >&2; exit 2; fi
   for folder in "${@:2}"; do
     [ -f "$folder/disparity.png" ] || { echo "bench: $folder: no disparity.png" >&2; exit 2; }
     sets+=("$(realpath "$folder")")
@@ -45,7 +51,7 @@ head_lines() {
   echo "- Data: the package's simulator (\`worlds/*.yaml\`) and \`/usr/share/mrpt/datasets\` (package mrpt-common)"
 }
 head_lines >"$report"
-"$(find build/devel -type f -name cornerstone_bench | head -n 1)" "${sets[@]}" >>"$report"
+"$(find build/devel -type f -name cornerstone_bench | head -n 1)" --seeds "$seeds" "${sets[@]}" >>"$report"
 cat bench/what_they_do_not_say.md >>"$report"
 cp "$report" bench/RESULTS.md
 cat bench/RESULTS.md

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 #include <utility>
 
 namespace cornerstone {
@@ -97,6 +98,15 @@ struct Climb {
   }
 };
 
+// Poses are judged one by one: each processor takes some of them.
+template <typename JudgePose>
+void judgeEach(std::vector<Hypothesis>& poses, const JudgePose& judge) {
+  cv::parallel_for_(cv::Range(0, static_cast<int>(poses.size())), [&](const cv::Range& range) {
+    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i)
+      poses[i] = judge(poses[i].reference_from_current);
+  });
+}
+
 }  // namespace
 
 bool PoseDistance::apart(const Pose2& a, const Pose2& b) const {
@@ -107,35 +117,40 @@ bool PoseDistance::apart(const Pose2& a, const Pose2& b) const {
 void settlePoses(const EvidencePair& maps, std::vector<Hypothesis>& poses, const RegistrationParams& params) {
   const Judge judge{maps, params};
   const Climb climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, M_PI / 180, 4}};
-  for (Hypothesis& h : poses)
-    h = judge(climb.from(h.reference_from_current).reference_from_current, {ScoreLevel::kFine, kFineSamples});
+  judgeEach(poses, [&](const Pose2& pose) {
+    return judge(climb.from(pose).reference_from_current, {ScoreLevel::kFine, kFineSamples});
+  });
 }
 
 std::vector<Hypothesis> searchPoses(const EvidencePair& maps, const std::vector<Pose2>& proposals,
                                     const RegistrationParams& params) {
   const Judge judge{maps, params};
   const PoseDistance same{maps.current.middle_m, kSame_m, kSame_rad};
+  const auto judgeAt = [&](const Look& look) {
+    return [&judge, look](const Pose2& pose) { return judge(pose, look); };
+  };
   std::vector<Hypothesis> poses;
   poses.reserve(proposals.size());
-  for (const Pose2& pose : proposals) poses.push_back(judge(pose, {ScoreLevel::kCoarse, kGlanceSamples}));
+  for (const Pose2& pose : proposals) poses.push_back({pose, {}, 0});
+  judgeEach(poses, judgeAt({ScoreLevel::kCoarse, kGlanceSamples}));
   sortBestFirst(poses);
   poses.resize(std::min(poses.size(), kGlanceKept));
-  for (Hypothesis& h : poses) h = judge(h.reference_from_current, {ScoreLevel::kCoarse, kCoarseSamples});
+  judgeEach(poses, judgeAt({ScoreLevel::kCoarse, kCoarseSamples}));
   sortBestFirst(poses);
   poses = bestApart(poses, same, kCoarseKept);
 
-  for (const auto& [climb, kept] :
-       {std::pair(Climb{judge, {ScoreLevel::kCoarse, kCoarseClimbSamples}, {0.4, 4 * M_PI / 180, 3}},
-                  kCoarseKept),
-        std::pair(Climb{judge, {ScoreLevel::kFine, kGlanceFineSamples}, {0.2, M_PI / 180, 2}}, kClimbed),
-        std::pair(Climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, 0.5 * M_PI / 180, 3}},
-                  kClimbed)}) {
-    for (Hypothesis& h : poses) h = climb.from(h.reference_from_current);
+  const auto rounds = {
+      std::pair(Climb{judge, {ScoreLevel::kCoarse, kCoarseClimbSamples}, {0.4, 4 * M_PI / 180, 3}},
+                kCoarseKept),
+      std::pair(Climb{judge, {ScoreLevel::kFine, kGlanceFineSamples}, {0.2, M_PI / 180, 2}}, kClimbed),
+      std::pair(Climb{judge, {ScoreLevel::kFine, kFineClimbSamples}, {0.1, 0.5 * M_PI / 180, 3}}, kClimbed)};
+  for (const auto& round : rounds) {
+    judgeEach(poses, [&](const Pose2& pose) { return round.first.from(pose); });
     sortBestFirst(poses);
     while (!poses.empty() && poses.back().value < kHopeless * poses.front().value) poses.pop_back();
-    poses = bestApart(poses, same, kept);
+    poses = bestApart(poses, same, round.second);
   }
-  for (Hypothesis& h : poses) h = judge(h.reference_from_current, {ScoreLevel::kFine, kFineSamples});
+  judgeEach(poses, judgeAt({ScoreLevel::kFine, kFineSamples}));
   sortBestFirst(poses);
   return bestApart(poses, {maps.current.middle_m, params.different_m, params.different_rad}, kKept);
 }

@@ -43,7 +43,9 @@ std::optional<double> wallDirection(const EdgeIndex& index, const EdgePoint& edg
   return normal.dot(edge.normal) > 0 ? line + M_PI / 2 : line - M_PI / 2;
 }
 
-std::vector<double> directionsOf(const std::vector<EdgePoint>& edges) {
+}  // namespace
+
+std::vector<double> wallDirections(const std::vector<EdgePoint>& edges) {
   const EdgeIndex index(edges, 0.5 * kWallReach_m);
   std::vector<double> sharp(kDegrees), smooth(kDegrees);
   for (std::size_t i = 0; i < std::min(edges.size(), kMaxWallEdges); ++i) {
@@ -64,15 +66,12 @@ std::vector<double> directionsOf(const std::vector<EdgePoint>& edges) {
   return smooth;
 }
 
-}  // namespace
-
-DirectionMatch::DirectionMatch(const std::vector<EdgePoint>& reference, const std::vector<EdgePoint>& current)
+DirectionMatch::DirectionMatch(const std::vector<double>& reference, const std::vector<double>& current)
     : agreement_(kDegrees) {
-  const std::vector<double> a = directionsOf(reference), b = directionsOf(current);
   for (int turn = 0; turn < kDegrees; ++turn)
     for (int i = 0; i < kDegrees; ++i)
       agreement_[static_cast<std::size_t>(turn)] +=
-          a[static_cast<std::size_t>((i + turn) % kDegrees)] * b[static_cast<std::size_t>(i)];
+          reference[static_cast<std::size_t>((i + turn) % kDegrees)] * current[static_cast<std::size_t>(i)];
 }
 
 double DirectionMatch::nearestPeak(double yaw_rad, double reach_rad) const {

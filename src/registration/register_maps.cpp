@@ -62,7 +62,7 @@ std::vector<Pose2> proposeAround(const Pose2& prior, const Corners& there, const
 std::vector<Pose2> propose(const PreparedMap& reference, const PreparedMap& current,
                            const RegistrationParams& params) {
   const EvidencePair maps{reference.evidence, current.evidence};
-  const DirectionMatch directions(maps.reference.edges, maps.current.edges);
+  const DirectionMatch directions(maps.reference.directions, maps.current.directions);
   std::vector<Pose2> poses =
       proposeFromCorners(reference.landmarks.corners, current.landmarks.corners, directions);
   WallSearchOptions options;
@@ -113,16 +113,14 @@ double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const 
 }
 
 // On all edges first: that judges the answer. Around the focus then, where enough is seen there.
-std::optional<RefinedPose> refine(const PreparedMap& reference, const PreparedMap& current,
-                                  const Pose2& guess, RefinementOptions options) {
-  const EdgeIndex reference_index(reference.landmarks.edges, options.first_reach_m / 3);
-  const EdgeIndex current_index(current.landmarks.edges, options.first_reach_m / 3);
-  options.cell_m = std::max(reference.evidence.cell_m, current.evidence.cell_m);
+std::optional<RefinedPose> refine(const EvidencePair& maps, const Pose2& guess, RefinementOptions options) {
+  const EdgeIndex &reference = maps.reference.all_edges, &current = maps.current.all_edges;
+  options.cell_m = std::max(maps.reference.cell_m, maps.current.cell_m);
   RefinementOptions everywhere = options;
   everywhere.focus_in_current_m.reset();
-  const auto whole = refineOnEdges(reference_index, current_index, guess, everywhere);
+  const auto whole = refineOnEdges(reference, current, guess, everywhere);
   if (!whole || !options.focus_in_current_m) return whole;
-  auto local = refineOnEdges(reference_index, current_index, whole->reference_from_current, options);
+  auto local = refineOnEdges(reference, current, whole->reference_from_current, options);
   if (!local || local->spread < options.min_spread ||
       PoseDistance{*options.focus_in_current_m, options.first_reach_m, kMergeAngle_rad}.apart(
           local->reference_from_current, whole->reference_from_current))
@@ -154,8 +152,15 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
   EvidenceGrid coarse(inLargerSquares(counts, params.coarse_cell_m), thinEdges(edges, params.coarse_cell_m),
                       params.coarse_reach_m);
   EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
-  return {std::move(coarse),  std::move(fine), std::move(edges),
-          std::move(samples), middle,          view.map.geometry.resolution_m};
+  std::vector<double> directions = wallDirections(edges);
+  return {std::move(coarse),
+          std::move(fine),
+          std::move(edges),
+          std::move(samples),
+          middle,
+          view.map.geometry.resolution_m,
+          std::move(directions),
+          EdgeIndex(view.landmarks.edges, params.refine_reach_m / 3)};
 }
 
 RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap& current,
@@ -171,7 +176,7 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
   const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
   if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
   const auto refined =
-      refine(reference, current, best.front().reference_from_current, refinementOptions(hints, params));
+      refine({there, here}, best.front().reference_from_current, refinementOptions(hints, params));
   if (!refined) return {{}, "too few edges agree"};
   PoseEvidence evidence = weighPoses(judged, params.fine_cell_m);
   evidence.spread = refined->spread;

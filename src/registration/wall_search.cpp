@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <opencv2/core/utility.hpp>
 
 namespace cornerstone {
 namespace {
@@ -113,7 +114,8 @@ class Correlation {
 
   // The best shifts of the current map turned by a yaw and, on request, by the opposite one: that only turns
   // the current map's grid about its origin, so that the correlation becomes a convolution.
-  void search(double yaw, bool opposite_too, std::vector<Pose2>& poses) const {
+  std::vector<Pose2> search(double yaw, bool opposite_too) const {
+    std::vector<Pose2> poses;
     const Turned here = here_.by(yaw);
     const Eigen::Vector2f low = here.bounds().low;
     const Spectra moving = transform(here, low, raster_);
@@ -121,12 +123,13 @@ class Correlation {
       const Eigen::Vector2f shift = raster_.square_m * Eigen::Vector2f(unwrapped(peak.x), unwrapped(peak.y));
       poses.push_back(poseOf(shift + low_ - low, yaw));
     }
-    if (!opposite_too) return;
+    if (!opposite_too) return poses;
     for (const cv::Point& peak : highest(product(moving, false), peaks_)) {
       const Eigen::Vector2f shift =
           raster_.square_m * Eigen::Vector2f(static_cast<float>(peak.x), static_cast<float>(peak.y));
       poses.push_back(poseOf(shift + low_ + low, wrapAngle(yaw + M_PI)));
     }
+    return poses;
   }
 
  private:
@@ -155,6 +158,26 @@ class Correlation {
   Spectra fixed_;
 };
 
+struct Turn {
+  double yaw;
+  bool opposite_too;
+};
+
+// Yaws of which one is the opposite of another become one turn.
+std::vector<Turn> turnsOf(const std::vector<double>& yaws) {
+  std::vector<Turn> turns;
+  std::vector<bool> done(yaws.size());
+  for (std::size_t i = 0; i < yaws.size(); ++i) {
+    if (done[i]) continue;
+    turns.push_back({yaws[i], false});
+    for (std::size_t k = i + 1; k < yaws.size(); ++k) {
+      if (std::abs(wrapAngle(yaws[k] - yaws[i] - M_PI)) > kSameYaw_rad) continue;
+      done[k] = turns.back().opposite_too = true;
+    }
+  }
+  return turns;
+}
+
 }  // namespace
 
 std::vector<Pose2> proposeFromWalls(const EvidencePair& maps, const std::vector<double>& yaws,
@@ -165,17 +188,14 @@ std::vector<Pose2> proposeFromWalls(const EvidencePair& maps, const std::vector<
   const Correlation correlation(
       Turned{reference.samples, reference_says, reference.coarse.squareSize(), {}}.by(0),
       Turned{current.samples, current_says, current.coarse.squareSize(), {}}.by(0), options);
+  const std::vector<Turn> turns = turnsOf(yaws);
+  std::vector<std::vector<Pose2>> found(turns.size());
+  cv::parallel_for_(cv::Range(0, static_cast<int>(turns.size())), [&](const cv::Range& range) {
+    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i)
+      found[i] = correlation.search(turns[i].yaw, turns[i].opposite_too);
+  });
   std::vector<Pose2> poses;
-  std::vector<bool> done(yaws.size());
-  for (std::size_t i = 0; i < yaws.size(); ++i) {
-    if (done[i]) continue;
-    bool opposite = false;
-    for (std::size_t k = i + 1; k < yaws.size(); ++k) {
-      if (std::abs(wrapAngle(yaws[k] - yaws[i] - M_PI)) > kSameYaw_rad) continue;
-      done[k] = opposite = true;
-    }
-    correlation.search(yaws[i], opposite, poses);
-  }
+  for (const std::vector<Pose2>& of_turn : found) poses.insert(poses.end(), of_turn.begin(), of_turn.end());
   return poses;
 }
 

@@ -70,6 +70,34 @@ TEST(DetectCorners, NoneFromASpeckOrAStraightWall) {
   EXPECT_TRUE(landmarks.corners.empty());
 }
 
+// The jambs of a door in a thin wall are too short to be arms; those of a passage through a thick one are
+// not.
+TEST(DetectCorners, DoorJambsAreNoCornersUnlessTheWallIsThick) {
+  for (const double thick_m : {0.15, 0.8}) {
+    DrawnWorld world;
+    world.rooms = {{0, 0, 6, 3}, {0, 3 + thick_m, 6, 6 + thick_m}, {2.5, 3, 3.5, 3 + thick_m}};
+    const Landmarks landmarks = detectLandmarks(draw(world, {Pose2{0, 0, 0.2}}), {});
+    // The wall's end is solid inside: its arms run along the wall and through the door.
+    const Found jamb =
+        find(landmarks, CornerKind::kInsideSolid, Pose2{0, 0, 0.2}.inverse() * Pose2{2.5, 3, M_PI / 2});
+    if (thick_m < 0.5) {
+      EXPECT_GT(jamb.distance_m, 0.3);
+    } else {
+      EXPECT_LT(jamb.distance_m, 0.03);
+      EXPECT_LT(jamb.turn_rad, 3 * M_PI / 180);
+    }
+  }
+}
+
+TEST(DetectCorners, NoneFromAPhantomBlob) {
+  DrawnWorld world;
+  world.rooms = {{0, 0, 20, 20}};
+  world.solids = {{10, 10, 10.3, 10.25}, {10.2, 9.9, 10.35, 10.3}, {9.85, 10.1, 10.1, 10.2}};
+  const Landmarks landmarks = detectLandmarks(draw(world, {Pose2{0, 0, 0.1}, {5, 5, 15, 15}}), {});
+  EXPECT_FALSE(landmarks.edges.empty());
+  EXPECT_TRUE(landmarks.corners.empty());
+}
+
 TEST(DetectCorners, SuppressedCornersKeepTheirDistance) {
   const LandmarkParams params;
   const Landmarks landmarks = detectLandmarks(draw(drawnOffice(), {Pose2{0, 0, 0.4}}), params);

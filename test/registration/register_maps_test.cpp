@@ -181,10 +181,31 @@ TEST(RegisterMaps, TenThousandByTenThousandCells) {
 
 TEST(RegisterMaps, DifferentResolutions) {
   const Pose2 there{0, 0, 0.1};
-  DrawnView coarse{kHere};
-  coarse.resolution_m = 0.08;
-  expectPose(align(draw(drawnOffice(), {there}), draw(drawnOffice(), coarse)), truth(there, kHere), 0.04,
-             3 * kFine_rad);
+  for (const double resolution_m : {0.025, 0.08, 0.1}) {
+    DrawnView other{kHere};
+    other.resolution_m = resolution_m;
+    expectPose(align(draw(drawnOffice(), {there}), draw(drawnOffice(), other)), truth(there, kHere), 0.04,
+               3 * kFine_rad);
+  }
+}
+
+// A building that is its own half turn, of which the maps share a part: the wrong half turn lays more of them
+// on each other, and nothing but the share speaks against it.
+TEST(RegisterMaps, RefusesABuildingThatIsItsOwnHalfTurn) {
+  DrawnWorld world;
+  world.rooms = {{0, 0, 24, 2}};
+  const double widths_m[] = {3, 5, 4, 6, 4.5, 1.5};
+  double x = 0;
+  for (const double width_m : widths_m) {
+    world.rooms.push_back({x, 2.2, x + width_m - 0.2, 6});
+    world.rooms.push_back({x + 0.4, 2, x + 1.2, 2.2});
+    world.rooms.push_back({24 - x - width_m + 0.2, -4, 24 - x, -0.2});  // the same about (12, 1)
+    world.rooms.push_back({24 - x - 1.2, -0.2, 24 - x - 0.4, 0});
+    x += width_m;
+  }
+  const GridMap a = draw(world, {Pose2{0, 0, 0.1}, {-1, -5, 15, 7}}),
+                b = draw(world, {Pose2{3, 1, 1.0}, {9, -5, 25, 7}});
+  EXPECT_FALSE(align(a, b).registration.has_value());
 }
 
 TEST(RegisterMaps, APriorElsewhereIsNotFollowed) {

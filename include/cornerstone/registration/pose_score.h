@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cornerstone/base/pose2.h"
+#include "cornerstone/landmarks/edge_index.h"
 #include "cornerstone/registration/evidence_grid.h"
 #include "cornerstone/registration/thin_edges.h"
 
@@ -18,6 +19,8 @@ struct MapEvidence {
   std::vector<EdgeSample> samples;  // the same, for the grids
   Eigen::Vector2d middle_m;         // mean of the edges
   double cell_m;                    // of the map itself
+  std::vector<double> directions;   // of the walls (proposals.h)
+  EdgeIndex all_edges;              // of the map, as found
 };
 
 struct EvidencePair {

@@ -10,10 +10,13 @@
 
 namespace cornerstone {
 
+// How much of a map's walls faces each way, one number a degree.
+std::vector<double> wallDirections(const std::vector<EdgePoint>& edges);
+
 // How well the walls' directions of two maps agree for each relative yaw.
 class DirectionMatch {
  public:
-  DirectionMatch(const std::vector<EdgePoint>& reference, const std::vector<EdgePoint>& current);
+  DirectionMatch(const std::vector<double>& reference, const std::vector<double>& current);
   // The best yaw within reach of a rough one.
   double nearestPeak(double yaw_rad, double reach_rad) const;
   // Yaws of the highest peaks, best first.
