@@ -6,16 +6,18 @@
 
 namespace cornerstone::bench {
 
-Matcher cornerstoneMatcher(const TrinocularRig& rig, int max_disparity_px, int cameras) {
+Matcher cornerstoneMatcher(const TrinocularRig& rig, int max_disparity_px, int cameras, int threads) {
   StereoParams params;
   params.max_disparity_px = max_disparity_px;
+  params.threads = threads;
+  const std::string in_threads = threads == 1 ? "" : ", " + std::to_string(threads) + " threads";
   const auto matcher = std::make_shared<StereoMatcher>(params);
   if (cameras == 3)
-    return {"cornerstone, three cameras",
+    return {"cornerstone, three cameras" + in_threads,
             [=](const StereoImages& images, Disparity& out) { matcher->match(images, rig, out); }};
   TrinocularRig pair = rig;
   pair.top_shift.reset();
-  return {"cornerstone, two cameras", [=](const StereoImages& images, Disparity& out) {
+  return {"cornerstone, two cameras" + in_threads, [=](const StereoImages& images, Disparity& out) {
             matcher->match({images.reference, images.right, {}}, pair, out);
           }};
 }

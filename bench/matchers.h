@@ -14,8 +14,8 @@ struct Matcher {
   std::function<void(const StereoImages&, Disparity&)> match;  // into an answer that is used again and again
 };
 
-// cornerstone with so many cameras, default parameters but for the range searched.
-Matcher cornerstoneMatcher(const TrinocularRig& rig, int max_disparity_px, int cameras);
+// cornerstone with so many cameras, default parameters but for the range searched and the threads.
+Matcher cornerstoneMatcher(const TrinocularRig& rig, int max_disparity_px, int cameras, int threads = 1);
 // StereoBM and StereoSGBM on the reference and right image (peers.h).
 Matcher bmMatcher(int max_disparity_px);
 Matcher sgbmMatcher(int max_disparity_px);

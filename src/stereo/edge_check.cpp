@@ -51,16 +51,20 @@ bool EdgeCheck::standsOut(const Winners& winners, const SweepInput& input, cv::P
          costAround(input, at, std::max(own_px - kAside_px, 0)) >= smallest_cost;
 }
 
-void EdgeCheck::check(const Winners& winners, const SweepInput& input, double smallest_cost_ratio,
-                      cv::Mat1b& rejection) {
+void EdgeCheck::check(const Winners& winners, const SweepInput& input, const How& how, cv::Mat1b& rejection) {
   rejection.copyTo(before_);
   const int reach_px = input.window_px / 2 + 1;
-  for (int y = 0; y < rejection.rows; ++y) {
-    const std::uint8_t *beside_edge = steps_.of(winners.disparity_px, y, reach_px), *before = before_[y];
-    for (int x = 0; x < rejection.cols; ++x)
-      if (beside_edge[x] != 0 && before[x] == 0 && !standsOut(winners, input, {x, y}, smallest_cost_ratio))
-        rejection(y, x) = static_cast<std::uint8_t>(Rejection::kUniqueness);
-  }
+  steps_.resize(static_cast<std::size_t>(how.workers.count()));
+  how.workers.share(rejection.rows, [&](int begin, int end, int worker) {
+    WinnerSteps& steps = steps_[static_cast<std::size_t>(worker)];
+    for (int y = begin; y < end; ++y) {
+      const std::uint8_t *beside_edge = steps.of(winners.disparity_px, y, reach_px), *before = before_[y];
+      for (int x = 0; x < rejection.cols; ++x)
+        if (beside_edge[x] != 0 && before[x] == 0 &&
+            !standsOut(winners, input, {x, y}, how.smallest_cost_ratio))
+          rejection(y, x) = static_cast<std::uint8_t>(Rejection::kUniqueness);
+    }
+  });
 }
 
 }  // namespace cornerstone

@@ -25,36 +25,47 @@ cv::Mat1b within(cv::Mat1b& plane, cv::Size size, int border_px) {
   return plane(cv::Rect({border_px, border_px}, size));
 }
 
-// Right and down differences at `reach_px` of an image within a border.
-void squashDifferences(const cv::Mat1b& image, int reach_px, float noise_grey, cv::Mat1b* channels) {
+struct Differences {
+  int reach_px = 1;
+  float noise_grey = 1;
+};
+
+// Right and down differences in a row of an image within a border.
+void squashDifferences(const cv::Mat1b& image, int row, const Differences& of, cv::Mat1b* channels) {
   const SweepKernels& kernels = sweepKernels();
-  const std::ptrdiff_t down = reach_px * static_cast<std::ptrdiff_t>(image.step);
-  for (int y = 0; y < image.rows; ++y) {
-    const std::uint8_t* middle = image[y];
-    kernels.squash({middle + reach_px, middle - reach_px, noise_grey, image.cols}, channels[0][y]);
-    kernels.squash({middle + down, middle - down, noise_grey, image.cols}, channels[1][y]);
-  }
+  const std::ptrdiff_t down = of.reach_px * static_cast<std::ptrdiff_t>(image.step);
+  const std::uint8_t* middle = image[row];
+  kernels.squash({middle + of.reach_px, middle - of.reach_px, of.noise_grey, image.cols}, channels[0][row]);
+  kernels.squash({middle + down, middle - down, of.noise_grey, image.cols}, channels[1][row]);
 }
 
 }  // namespace
 
-void GradientFeatures::compute(const cv::Mat1b& image) {
+void GradientFeatures::compute(const cv::Mat1b& image, Workers& workers) {
   constexpr int kSmoothBorder_px = kReach_px, kBorder_px = kReach_px + 1;  // smoothing takes one
   const cv::Mat1b framed = within(padded_, image.size(), kBorder_px);
   smooth_ = within(padded_smooth_, image.size(), kSmoothBorder_px);
   cv::Mat1b with_border = padded_.colRange(0, image.cols + 2 * kBorder_px);
   cv::copyMakeBorder(image, with_border, kBorder_px, kBorder_px, kBorder_px, kBorder_px,
                      cv::BORDER_REFLECT_101);
-  for (int y = 0; y < image.rows + 2 * kSmoothBorder_px; ++y) {
-    const std::uint8_t* rows[] = {padded_[y] + 1, padded_[y + 1] + 1, padded_[y + 2] + 1};
-    sweepKernels().smooth(rows, image.cols + 2 * kSmoothBorder_px, padded_smooth_[y]);
-  }
+  workers.share(image.rows + 2 * kSmoothBorder_px, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      const std::uint8_t* rows[] = {padded_[y] + 1, padded_[y + 1] + 1, padded_[y + 2] + 1};
+      sweepKernels().smooth(rows, image.cols + 2 * kSmoothBorder_px, padded_smooth_[y]);
+    }
+  });
   for (std::size_t c = 0; c < kChannels; ++c) channels_[c] = within(planes_[c], image.size(), 0);
-  squashDifferences(framed, 1, kNoise_grey, &channels_[0]);
-  squashDifferences(smooth_, 2, kSmoothNoise_grey, &channels_[2]);
   together_.create(image.rows + 1, image.cols);
-  cv::Mat4b pixels = together_.rowRange(0, image.rows);
-  cv::merge(channels_.data(), kChannels, pixels);
+  workers.share(image.rows, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      squashDifferences(framed, y, {1, kNoise_grey}, &channels_[0]);
+      squashDifferences(smooth_, y, {2, kSmoothNoise_grey}, &channels_[2]);
+    }
+    std::array<cv::Mat, kChannels> channels;
+    for (std::size_t c = 0; c < kChannels; ++c) channels[c] = channels_[c].rowRange(begin, end);
+    cv::Mat pixels = together_.rowRange(begin, end);
+    cv::merge(channels.data(), kChannels, pixels);
+  });
 }
 
 int GradientFeatures::costAt(cv::Point here, const GradientFeatures& other, cv::Point there) const {
@@ -76,20 +87,19 @@ int GradientFeatures::costAround(cv::Point here, const GradientFeatures& other, 
   return cost;
 }
 
-void GradientFeatures::costs(const GradientFeatures& other, cv::Point offset, cv::Mat1b& costs) const {
+void GradientFeatures::costsOfRow(int row, const GradientFeatures& other, cv::Point offset,
+                                  std::uint8_t* costs) const {
   static_assert(kChannels == 4);
   const cv::Rect image({0, 0}, size()), seen = image & (image - offset);
-  for (int y = seen.y; y < seen.br().y; ++y) {
-    std::array<const std::uint8_t*, kChannels> a{}, b{};
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      a[c] = channels_[c][y];
-      b[c] = other.channels_[c][y + offset.y] + offset.x;
-    }
-    std::uint8_t* out = costs[y];
-    for (int x = seen.x; x < seen.br().x; ++x)
-      out[x] = static_cast<std::uint8_t>(std::abs(a[0][x] - b[0][x]) + std::abs(a[1][x] - b[1][x]) +
-                                         std::abs(a[2][x] - b[2][x]) + std::abs(a[3][x] - b[3][x]));
+  if (row < seen.y || row >= seen.br().y) return;
+  std::array<const std::uint8_t*, kChannels> a{}, b{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    a[c] = channels_[c][row];
+    b[c] = other.channels_[c][row + offset.y] + offset.x;
   }
+  for (int x = seen.x; x < seen.br().x; ++x)
+    costs[x] = static_cast<std::uint8_t>(std::abs(a[0][x] - b[0][x]) + std::abs(a[1][x] - b[1][x]) +
+                                         std::abs(a[2][x] - b[2][x]) + std::abs(a[3][x] - b[3][x]));
 }
 
 }  // namespace cornerstone

@@ -46,9 +46,14 @@ bool endsAtAnEdge(const std::uint8_t* grey, std::ptrdiff_t outward, int inner_st
   return false;
 }
 
+// What a look from a pixel reaches.
+int marginFor(int window_radius_px) { return window_radius_px + kFeatureReach_px + kEdgeWidth_px; }
+
 }  // namespace
 
-void OutlineCheck::checkSide(const Winners& winners, const cv::Mat1b& grey, cv::Point at, cv::Point outward) {
+void OutlineCheck::checkSide(const Ends& in, cv::Point at, cv::Point outward) const {
+  const Winners& winners = in.winners;
+  const cv::Mat1b& grey = in.grey;
   const int own_px = winners.disparity_px(at);
   cv::Point beyond = at + outward;
   const auto ahead = [&] { return own_px - winners.disparity_px(beyond); };
@@ -70,16 +75,16 @@ void OutlineCheck::checkSide(const Winners& winners, const cv::Mat1b& grey, cv::
   for (int k = 0; k < edge.ahead_px; ++k) {
     const cv::Point here = at - k * outward;
     if (std::abs(winners.disparity_px(here) - own_px) > 2 * kStep_px) return;
-    outlying_.push_back(here);
+    in.found.outlying.push_back(here);
   }
 }
 
 // Marks answered pixels beside a step or a pixel without an answer.
-const std::uint8_t* OutlineCheck::endsOf(const Winners& winners, int y) {
+const std::uint8_t* OutlineCheck::endsOf(const Ends& in, int y) const {
   const std::uint8_t *here = before_[y], *above = before_[y - 1], *below = before_[y + 1];
-  const std::uint8_t* steps = steps_.of(winners.disparity_px, y, 1);
-  ends_.resize(static_cast<std::size_t>(before_.cols));
-  std::uint8_t* ends = ends_.data();
+  const std::uint8_t* steps = in.found.steps.of(in.winners.disparity_px, y, 1);
+  in.found.ends.resize(static_cast<std::size_t>(before_.cols));
+  std::uint8_t* ends = in.found.ends.data();
   for (int x = 1; x < before_.cols - 1; ++x) {
     const int beside = here[x - 1] | here[x + 1] | above[x] | below[x] | steps[x];
     ends[x] = static_cast<std::uint8_t>(static_cast<int>(beside != 0) & static_cast<int>(here[x] == 0));
@@ -87,25 +92,34 @@ const std::uint8_t* OutlineCheck::endsOf(const Winners& winners, int y) {
   return ends;
 }
 
-void OutlineCheck::check(const Winners& winners, const SweepInput& input, cv::Mat1b& rejection) {
-  window_radius_px_ = input.window_px / 2;
-  const int margin = window_radius_px_ + kFeatureReach_px + kEdgeWidth_px;
-  rejection.copyTo(before_);
-  outlying_.clear();
-  for (int y = margin; y < rejection.rows - margin; ++y) {
-    const std::uint8_t* ends = endsOf(winners, y);
-    for (int x = margin; x < rejection.cols - margin; ++x) {
-      if (ends[x] == 0) continue;
-      const int own_px = winners.disparity_px(y, x);
-      for (const cv::Point outward : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
-        const cv::Point next = cv::Point(x, y) + outward;
-        if (before_(next) == 0 && std::abs(own_px - winners.disparity_px(next)) <= kStep_px) continue;
-        checkSide(winners, input.reference->smooth(), {x, y}, outward);
-      }
+void OutlineCheck::checkRow(const Ends& in, int y) const {
+  const int margin = marginFor(window_radius_px_);
+  const std::uint8_t* ends = endsOf(in, y);
+  for (int x = margin; x < before_.cols - margin; ++x) {
+    if (ends[x] == 0) continue;
+    const int own_px = in.winners.disparity_px(y, x);
+    for (const cv::Point outward : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
+      const cv::Point next = cv::Point(x, y) + outward;
+      if (before_(next) == 0 && std::abs(own_px - in.winners.disparity_px(next)) <= kStep_px) continue;
+      checkSide(in, {x, y}, outward);
     }
   }
-  for (const cv::Point at : outlying_)
-    if (rejection(at) == 0) rejection(at) = static_cast<std::uint8_t>(Rejection::kUniqueness);
+}
+
+void OutlineCheck::check(const Winners& winners, const SweepInput& input, Workers& workers,
+                         cv::Mat1b& rejection) {
+  window_radius_px_ = input.window_px / 2;
+  rejection.copyTo(before_);
+  found_.resize(static_cast<std::size_t>(workers.count()));
+  for (Found& found : found_) found.outlying.clear();
+  const int margin = marginFor(window_radius_px_);
+  workers.share(std::max(rejection.rows - 2 * margin, 0), [&](int begin, int end, int worker) {
+    const Ends in{winners, input.reference->smooth(), found_[static_cast<std::size_t>(worker)]};
+    for (int y = begin; y < end; ++y) checkRow(in, y + margin);
+  });
+  for (const Found& found : found_)
+    for (const cv::Point at : found.outlying)
+      if (rejection(at) == 0) rejection(at) = static_cast<std::uint8_t>(Rejection::kUniqueness);
 }
 
 }  // namespace cornerstone

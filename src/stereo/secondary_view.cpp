@@ -42,12 +42,12 @@ void SecondaryView::prepare(const GradientFeatures& features, const cv::Point2d&
 }
 
 // Where shifts are no whole pixels, the features are fetched one by one.
-void SecondaryView::gather(int row) {
-  const int width = features_->size().width, length = lineLength();
+void SecondaryView::gather(int row, const cv::Range& columns, Gathered& gathered) const {
+  const int length = lineLength();
   for (std::size_t c = 0; c < lines_.size(); ++c) {
-    gathered_[c].create(1, width * disparities_ + kVector_bytes);
-    std::uint8_t* out = gathered_[c][0];
-    for (int x = 0; x < width; ++x) {
+    gathered[c].create(1, columns.size() * disparities_ + kVector_bytes);
+    std::uint8_t* out = gathered[c][0];
+    for (int x = columns.start; x < columns.end; ++x) {
       const int at = vertical_ ? row : x, from = backwards_ ? length - 1 - at : at;
       const std::uint8_t* line = lines_[c][vertical_ ? x : row] + from;
       const int end = length - from;
@@ -56,9 +56,7 @@ void SecondaryView::gather(int row) {
         *out = step < end ? line[step] : std::uint8_t{0};
       }
     }
-    out_.lines[c] = gathered_[c][0];
   }
-  out_.step = disparities_;
 }
 
 void SecondaryView::countSeen() {
@@ -78,18 +76,21 @@ void SecondaryView::countSeen() {
   }
 }
 
-const SeenLines& SecondaryView::linesOf(int row) {
-  const int length = lineLength();
-  out_.seen = seenOf(row);
+SeenLines SecondaryView::linesOf(int row, const cv::Range& columns, Gathered& gathered) const {
+  SeenLines lines;
+  lines.seen = seenOf(row) + columns.start;
   if (!unit_) {
-    gather(row);
-    return out_;
+    gather(row, columns, gathered);
+    for (std::size_t c = 0; c < lines_.size(); ++c) lines.lines[c] = gathered[c][0];
+    lines.step = disparities_;
+    return lines;
   }
-  const int at = vertical_ ? row : 0;
+  const int length = lineLength(), at = vertical_ ? row : 0;
+  lines.step = vertical_ ? static_cast<std::ptrdiff_t>(lines_[0].step) : backwards_ ? -1 : 1;
   for (std::size_t c = 0; c < lines_.size(); ++c)
-    out_.lines[c] = lines_[c][vertical_ ? 0 : row] + (backwards_ ? length - at : at + 1);
-  out_.step = vertical_ ? static_cast<std::ptrdiff_t>(lines_[0].step) : backwards_ ? -1 : 1;
-  return out_;
+    lines.lines[c] =
+        lines_[c][vertical_ ? 0 : row] + (backwards_ ? length - at : at + 1) + columns.start * lines.step;
+  return lines;
 }
 
 }  // namespace cornerstone

@@ -14,6 +14,7 @@ constexpr int kMaxDisparity_px = 1024;  // far above any camera's use; keeps cos
 constexpr int kSmallestWindow_px = 3, kLargestWindow_px = 7;  // larger sums would not fit 16 bits
 constexpr int kSmallestDerivedWindow_px = 5;                  // with 3, answers are twice as noisy
 constexpr int kWindowsAcross = 80;  // of the image's width; about a degree of a view of 90
+constexpr int kMostThreads = 64;
 
 // An odd number within the range, or 0: derived from the image's width.
 void requireOddOrNone(int value, const std::pair<int, int>& range, const std::string& name) {
@@ -35,6 +36,7 @@ void requireUsable(const StereoParams& params) {
   requireWithin(params.strong_product, 0, 1000, "strong_product");
   requireWithin(params.smallest_strong_windows, 0, 1000, "smallest_strong_windows");
   requirePositive(params.surface_step_px, "surface_step_px");
+  requireWithin(params.threads, 1, kMostThreads, "threads");
 }
 
 std::string textOf(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
@@ -45,8 +47,8 @@ void reject(Disparity& disparity, int y, int x, Rejection why) {
   disparity.rejection(y, x) = static_cast<std::uint8_t>(why);
 }
 
-void clearRejected(Disparity& disparity) {
-  for (int y = 0; y < disparity.rejection.rows; ++y) {
+void clearRejected(Disparity& disparity, const cv::Range& rows) {
+  for (int y = rows.start; y < rows.end; ++y) {
     const std::uint8_t* rejections = disparity.rejection[y];
     float *disparities_px = disparity.disparity_px[y], *sigmas_px = disparity.sigma_px[y];
     for (int x = 0; x < disparity.rejection.cols; ++x) {
@@ -73,7 +75,10 @@ void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
     throw InputError("top image given, but the rig has no third camera");
 }
 
-StereoMatcher::StereoMatcher(const StereoParams& params) : params_(params) { requireUsable(params); }
+StereoMatcher::StereoMatcher(const StereoParams& params) : params_(params) {
+  requireUsable(params);
+  workers_ = std::make_unique<Workers>(params.threads);
+}
 
 Disparity StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig) {
   Disparity disparity;
@@ -85,14 +90,16 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   requireUsable(images, rig);
   disparity.rig = rig;
   sweep(images, rig);
-  validator_.check(*winners_, sweep_input_,
+  validator_.check({*winners_, sweep_input_},
                    {params_.smallest_margin_share, params_.strong_product, params_.smallest_edge_cost_ratio,
                     params_.largest_own_share, params_.left_right_tolerance_px},
-                   disparity.rejection);
+                   *workers_, disparity.rejection);
   refine(disparity);
   dropSmallSurfaces(disparity);
-  outline_check_.check(*winners_, sweep_input_, disparity.rejection);
-  clearRejected(disparity);
+  outline_check_.check(*winners_, sweep_input_, *workers_, disparity.rejection);
+  workers_->share(disparity.rejection.rows, [&](int begin, int end) {
+    clearRejected(disparity, {begin, end});
+  });
 }
 
 int StereoMatcher::windowFor(int image_width_px) const {
@@ -107,29 +114,32 @@ int StereoMatcher::supportFor(int image_width_px) const {
 
 void StereoMatcher::sweep(const StereoImages& images, const TrinocularRig& rig) {
   const int disparities = CostSweep::disparitiesFor(params_.max_disparity_px);
-  reference_.compute(images.reference);
-  right_.compute(images.right);
+  reference_.compute(images.reference, *workers_);
+  right_.compute(images.right, *workers_);
   sweep_input_.reference_image = &images.reference;
   sweep_input_.reference = &reference_;
   sweep_input_.views[0].prepare(right_, rig.right_shift, disparities);
   sweep_input_.view_count = 1;
   if (!images.top.empty()) {
-    top_.compute(images.top);
+    top_.compute(images.top, *workers_);
     sweep_input_.views[1].prepare(top_, *rig.top_shift, disparities);
     sweep_input_.view_count = 2;
   }
   sweep_input_.max_disparity_px = params_.max_disparity_px;
   sweep_input_.window_px = windowFor(images.reference.cols);
-  winners_ = &cost_sweep_.run(sweep_input_);
+  winners_ = &cost_sweep_.run(sweep_input_, *workers_);
 }
 
 void StereoMatcher::refine(Disparity& disparity) {
-  refiner_.refine({winners_, &disparity.rejection, sweep_input_.view_count, sweep_input_.window_px},
-                  {supportFor(disparity.rejection.cols)}, disparity.disparity_px, disparity.sigma_px);
+  refiner_.refine(
+      {winners_, &disparity.rejection, sweep_input_.view_count, sweep_input_.window_px, workers_.get()},
+      {supportFor(disparity.rejection.cols)}, disparity.disparity_px, disparity.sigma_px);
   const auto largest_sigma = static_cast<float>(params_.largest_sigma_px);
-  for (int y = 0; y < disparity.rejection.rows; ++y)
-    for (int x = 0; x < disparity.rejection.cols; ++x)
-      if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, y, x, Rejection::kTexture);
+  workers_->share(disparity.rejection.rows, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      for (int x = 0; x < disparity.rejection.cols; ++x)
+        if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, y, x, Rejection::kTexture);
+  });
 }
 
 void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {

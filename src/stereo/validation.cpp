@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "cornerstone/stereo/cost_noise.h"
-#include "cornerstone/stereo/fill.h"
 
 namespace cornerstone {
 namespace {
@@ -21,29 +20,42 @@ constexpr std::uint8_t codeOf(Rejection rejection) { return static_cast<std::uin
 
 }  // namespace
 
-void Validator::check(const Winners& winners, const SweepInput& input, const ValidationParams& params,
+void Validator::check(const ValidationInput& input, const ValidationParams& params, Workers& workers,
                       cv::Mat1b& rejection) {
-  rejection.create(input.reference->size());
-  checkWinners(winners, input, params, rejection);
-  for (std::size_t v = 0; v < input.view_count; ++v)
-    checkSecondary(winners, input.views[v], params.left_right_tolerance_px, rejection);
-  checkOwnCosts(winners, input, params.largest_own_share, rejection);
-  edge_check_.check(winners, input, params.smallest_edge_cost_ratio, rejection);
+  const cv::Size size = input.sweep.reference->size();
+  rejection.create(size);
+  evidence_.create(size);
+  claims_.create(size);
+  tolerance_px_ = params.left_right_tolerance_px;
+  workers.share(size.height, [&](int begin, int end) {
+    checkWinners(input, params, {begin, end}, rejection);
+  });
+  for (std::size_t v = 0; v < input.sweep.view_count; ++v) {
+    const SecondaryView& view = input.sweep.views[v];
+    countSteps(view, size.width);
+    workers.share(view.vertical() ? size.width : size.height, [&](int begin, int end) {
+      const cv::Rect area = view.vertical() ? cv::Rect(begin, 0, end - begin, size.height)
+                                            : cv::Rect(0, begin, size.width, end - begin);
+      checkSecondary(input.winners, view, area, rejection);
+    });
+  }
+  checkOwnCosts(input, params.largest_own_share, workers, rejection);
+  edge_check_.check(input.winners, input.sweep, {params.smallest_edge_cost_ratio, workers}, rejection);
 }
 
-void Validator::checkWinners(const Winners& winners, const SweepInput& input, const ValidationParams& params,
-                             cv::Mat1b& rejection) {
+void Validator::checkWinners(const ValidationInput& input, const ValidationParams& params,
+                             const cv::Range& rows, cv::Mat1b& rejection) {
+  const Winners& winners = input.winners;
   const int smallest_margin = static_cast<int>(std::lround(params.smallest_margin_share * kSearchChance));
-  const int last_px = input.max_disparity_px;
-  const CostNoise noise(input.window_px, input.view_count);
+  const int last_px = input.sweep.max_disparity_px;
+  const CostNoise noise(input.sweep.window_px, input.sweep.view_count);
   const float flat_gain = kFlatGain_sigmas * noise.share();
   // Of chance matches both margin and lead are small: their product tells best what is beyond doubt.
-  const int window_area = input.window_px * input.window_px;
+  const int window_area = input.sweep.window_px * input.sweep.window_px;
   const double unit = static_cast<double>(kSearchChance) * kSearchChance / (window_area * kChanceCost);
   const auto strong_product = static_cast<float>(params.strong_product * unit) * noise.share();
   const int least_cost = kLeastPairCost * window_area;
-  evidence_.create(rejection.size());
-  for (int y = 0; y < rejection.rows; ++y) {
+  for (int y = rows.start; y < rows.end; ++y) {
     const short *costs = winners.cost[y], *before = winners.cost_before[y], *after = winners.cost_after[y];
     const short* disparities_px = winners.disparity_px[y];
     const short* chance = winners.chance_cost[y];
@@ -81,45 +93,46 @@ void Validator::countSteps(const SecondaryView& view, int width) {
   }
 }
 
-void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
+void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, const cv::Rect& area,
                                cv::Mat1b& rejection) {
-  const int width = rejection.cols;
-  countSteps(view, width);
   const int* steps = steps_.data();
-  claims_.create(rejection.size());
-  fillAll(claims_, std::numeric_limits<int>::max());
-  for (int y = 0; y < rejection.rows; ++y) {
+  for (int y = area.y; y < area.br().y; ++y)
+    std::fill_n(claims_[y] + area.x, area.width, std::numeric_limits<int>::max());
+  for (int y = area.y; y < area.br().y; ++y) {
     const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
     int* claims = claims_[y];
-    for (int x = 0; x < width; ++x) {
+    for (int x = area.x; x < area.br().x; ++x) {
       if (disparities_px[x] > seen[x]) continue;
       int& claim = claims[x + steps[disparities_px[x]]];
       claim = std::min(claim, costs[x] * kCostUnit + disparities_px[x]);
     }
   }
-  for (int y = 0; y < rejection.rows; ++y) {
+  for (int y = area.y; y < area.br().y; ++y) {
     const short *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
     const int* claims = claims_[y];
     std::uint8_t* rejections = rejection[y];
-    for (int x = 0; x < width; ++x) {
+    for (int x = area.x; x < area.br().x; ++x) {
       if (rejections[x] != 0 || disparities_px[x] > seen[x]) continue;
       const int claimed_px = claims[x + steps[disparities_px[x]]] & (kCostUnit - 1);
-      if (std::abs(claimed_px - disparities_px[x]) > tolerance_px)
+      if (std::abs(claimed_px - disparities_px[x]) > tolerance_px_)
         rejections[x] = codeOf(Rejection::kLeftRight);
     }
   }
 }
 
-void Validator::checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
+void Validator::checkOwnCosts(const ValidationInput& input, double largest_share, Workers& workers,
                               cv::Mat1b& rejection) {
-  box_sums_.compute(winners.own_cost, input.window_px, own_costs_);
-  const double largest = largest_share * kChanceCost * input.window_px * input.window_px;
-  for (int y = 0; y < rejection.rows; ++y) {
-    const short* costs = own_costs_[y];
-    std::uint8_t* rejections = rejection[y];
-    for (int x = 0; x < rejection.cols; ++x)
-      if (costs[x] > largest && rejections[x] == 0) rejections[x] = codeOf(Rejection::kTexture);
-  }
+  const int window_px = input.sweep.window_px;
+  box_sums_.compute(input.winners.own_cost, window_px, own_costs_);
+  const double largest = largest_share * kChanceCost * window_px * window_px;
+  workers.share(rejection.rows, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      const short* costs = own_costs_[y];
+      std::uint8_t* rejections = rejection[y];
+      for (int x = 0; x < rejection.cols; ++x)
+        if (costs[x] > largest && rejections[x] == 0) rejections[x] = codeOf(Rejection::kTexture);
+    }
+  });
 }
 
 }  // namespace cornerstone

@@ -7,6 +7,8 @@
 namespace cornerstone {
 namespace {
 
+Workers one_thread(1);
+
 struct Scene {
   cv::Mat1b reference = cv::Mat1b(40, 61), secondary = cv::Mat1b(40, 61);
   GradientFeatures reference_features, secondary_features;
@@ -14,8 +16,8 @@ struct Scene {
     cv::RNG random(static_cast<std::uint64_t>(seed));
     random.fill(reference, cv::RNG::UNIFORM, 0, 255);
     random.fill(secondary, cv::RNG::UNIFORM, 0, 255);
-    reference_features.compute(reference);
-    secondary_features.compute(secondary);
+    reference_features.compute(reference, one_thread);
+    secondary_features.compute(secondary, one_thread);
   }
 };
 
@@ -40,7 +42,7 @@ TEST(CostSweep, KeepsTheWindowCostsOfItsWinners) {
     input.view_count = 1;
     input.views[0].prepare(scene.secondary_features, shift, CostSweep::disparitiesFor(20));
     CostSweep sweep;
-    const Winners& winners = sweep.run(input);
+    const Winners& winners = sweep.run(input, one_thread);
     int checked = 0;
     for (int y = 1; y < 39; ++y) {
       for (int x = 1; x < 60; ++x) {

@@ -12,9 +12,11 @@ cv::Mat1b rising(int per_column) {  // brighter to the right, level from top to 
   return image;
 }
 
+Workers one_thread(1);
+
 TEST(GradientFeatures, TellDirectionAndSizeOfDifferences) {
   GradientFeatures features;
-  features.compute(rising(2));
+  features.compute(rising(2), one_thread);
   // To the right: 4 grey levels at 1 px against a noise of 4: 15.5 (1 + 4 / 8) = 23; 8 at 2 px against 2: 28.
   EXPECT_EQ(features.channel(0)(4, 16), 23);
   EXPECT_EQ(features.channel(2)(4, 16), 28);
@@ -30,9 +32,9 @@ TEST(GradientFeatures, OffsetChangesNothingAndGainLittle) {
   image.convertTo(brighter, CV_8U, 1, 30);
   image.convertTo(louder, CV_8U, 1.3);
   GradientFeatures features, of_brighter, of_louder;
-  features.compute(image);
-  of_brighter.compute(brighter);
-  of_louder.compute(louder);
+  features.compute(image, one_thread);
+  of_brighter.compute(brighter, one_thread);
+  of_louder.compute(louder, one_thread);
   for (std::size_t c = 0; c < GradientFeatures::kChannels; ++c) {
     EXPECT_EQ(cv::norm(features.channel(c), of_brighter.channel(c), cv::NORM_INF), 0) << c;
     // Smoothing rounds, so that the smallest differences change sign.
@@ -46,11 +48,11 @@ TEST(GradientFeatures, CostsOfAPlaneAreThoseOfItsPixels) {
   random.fill(image, cv::RNG::UNIFORM, 0, 255);
   random.fill(other, cv::RNG::UNIFORM, 0, 255);
   GradientFeatures here, there;
-  here.compute(image);
-  there.compute(other);
+  here.compute(image, one_thread);
+  there.compute(other, one_thread);
   const cv::Point offset(-3, 2);
   cv::Mat1b costs(image.size(), std::uint8_t{255});
-  here.costs(there, offset, costs);
+  for (int y = 0; y < image.rows; ++y) here.costsOfRow(y, there, offset, costs[y]);
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x) {
       const bool seen = x >= 3 && y < 10;

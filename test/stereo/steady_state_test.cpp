@@ -50,19 +50,22 @@ TEST(StereoMatcher, AllocatesNothingInTheSteadyState) {
   cv::Mat::setDefaultAllocator(&counting);
   cv::RNG random(17);
   const Texture texture({160, 120}, 1, 30, random);
-  for (const bool third : {true, false}) {
+  for (const auto& [third, threads] : {std::pair{true, 1}, {false, 1}, {true, 2}}) {
     StereoImages images = viewsOf(texture, {7, 0}, {2, 1}, random);
     if (third)
       for (cv::Mat1b* image : {&images.reference, &images.right, &images.top})
         cv::resize(*image, *image, {640, 480});
     else
       images.top.release();
-    StereoMatcher matcher{StereoParams()};
+    StereoParams params;
+    params.threads = threads;
+    StereoMatcher matcher(params);
     Disparity disparity;
     for (int i = 0; i < 2; ++i) matcher.match(images, rigOf(images), disparity);
     const int before = allocations;
     matcher.match(images, rigOf(images), disparity);
-    EXPECT_EQ(allocations - before, 0) << (third ? "three cameras, 640x480" : "two cameras, 160x120");
+    EXPECT_EQ(allocations - before, 0)
+        << (third ? "three cameras, 640x480" : "two cameras, 160x120") << ", threads: " << threads;
   }
   cv::Mat::setDefaultAllocator(usual);
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "cornerstone/base/errors.h"
 #include "stereo/synthetic_views.h"
 
@@ -173,6 +175,43 @@ TEST(StereoMatcher, ThirdCameraMayStandAnywhereOnAnAxis) {
   }
 }
 
+// All that one answer holds, bit by bit.
+void expectSame(const Disparity& one, const Disparity& other, const std::string& what) {
+  EXPECT_EQ(cv::norm(one.disparity_px, other.disparity_px, cv::NORM_INF), 0) << what;
+  EXPECT_EQ(cv::norm(one.sigma_px, other.sigma_px, cv::NORM_INF), 0) << what;
+  EXPECT_EQ(cv::norm(one.rejection, other.rejection, cv::NORM_INF), 0) << what;
+}
+
+TEST(StereoMatcher, AnswersAreTheSameWithAnyNumberOfThreads) {
+  cv::RNG random(18);
+  const StereoImages far = viewsOf(Texture(kSize, 1, 30, random), {3, 0.02}, {3, 1}, random);
+  const StereoImages near = viewsOf(Texture(kSize, 2, 6, random), {13, 0}, {3, 1}, random);
+  StereoImages images = far;  // with depth steps, and texture too weak for an answer everywhere
+  const cv::Rect box(60, 40, 40, 40);
+  near.reference(box).copyTo(images.reference(box));
+  near.right(box - cv::Point(13, 0)).copyTo(images.right(box - cv::Point(13, 0)));
+  near.top(box + cv::Point(0, 13)).copyTo(images.top(box + cv::Point(0, 13)));
+  for (const cv::Size size : {kSize, cv::Size(333, 241), cv::Size(40, 7), cv::Size(9, 30), cv::Size(1, 1)})
+    for (const cv::Point2d third : {cv::Point2d(0, 1), {0, -0.75}, {-2, 0}, {0, 0}}) {
+      StereoImages resized;
+      cv::resize(images.reference, resized.reference, size);
+      cv::resize(images.right, resized.right, size);
+      if (third != cv::Point2d()) cv::resize(images.top, resized.top, size);
+      TrinocularRig rig = rigOf(resized);
+      if (rig.top_shift) rig.top_shift = third;
+      StereoParams params;
+      const Disparity alone = StereoMatcher(params).match(resized, rig);
+      for (params.threads = 2; params.threads <= 5; ++params.threads) {
+        StereoMatcher matcher(params);
+        for (int turn = 0; turn < 3; ++turn) {
+          std::ostringstream what;
+          what << size << " third camera " << third << ", " << params.threads << " threads, turn " << turn;
+          expectSame(matcher.match(resized, rig), alone, what.str());
+        }
+      }
+    }
+}
+
 TEST(StereoMatcher, BuffersOfOneFrameDoNotReachTheNext) {
   cv::RNG random(13);
   const StereoImages first = viewsOf(Texture(kSize, 1, 30, random), {5, 0}, {2, 1}, random);
@@ -219,6 +258,9 @@ TEST(StereoMatcher, RefusesBadImagesAndParameters) {
   StereoParams even;
   even.window_px = 8;
   EXPECT_THROW(StereoMatcher{even}, InputError);
+  StereoParams nobody;
+  nobody.threads = 0;
+  EXPECT_THROW(StereoMatcher{nobody}, InputError);
 }
 
 TEST(StereoMatcher, AnyImageSizeWorks) {

@@ -14,6 +14,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "cornerstone/base/workers.h"
 #include "cornerstone/stereo/box_sums.h"
 #include "cornerstone/stereo/secondary_view.h"
 
@@ -40,31 +41,52 @@ struct Winners {
   cv::Mat1b margin, lead;  // see PathWinner
 };
 
+// The columns that one worker sweeps, and what it keeps of them from row to row.
+struct SweepStripe {
+  cv::Range columns;
+  cv::Range window_columns;  // those and what their windows reach
+  int rows_known = 0;        // pair costs are known above this row
+  cv::Mat1b pair_costs;      // a ring of rows
+  cv::Mat_<std::uint16_t> column_sums;
+  std::vector<int> entering, leaving;  // columns of the sliding window, mirrored, of window_columns
+  cv::Mat1b path_sums;                 // of one pixel
+  std::array<SecondaryView::Gathered, 2> gathered;
+};
+
+// Rows are swept in rounds. In each, every worker takes the window costs of its stripe of columns, then the
+// paths along some of the rows, then, in its stripe again, the path from above: what a row and what a column
+// needs are never worked on at the same time, so that the answer does not depend on the number of workers.
 class CostSweep {
  public:
   // Disparities are searched up to max_disparity_px rounded up to a number that suits the processor.
   static int disparitiesFor(int max_disparity_px);
-  const Winners& run(SweepInput& input);
+  const Winners& run(const SweepInput& input, Workers& workers);
 
  private:
-  void prepare(SweepInput& input);
-  void planeCosts(int disparity_px);
-  void endCosts();
-  std::uint8_t* pairCostsOf(int row);
-  void windowSums(int row);
-  void jumpPenalties(int row);
-  void keep(int row);
+  void prepare(const SweepInput& input, int workers);
+  void prepareRows(int workers);
+  void prepareStripe(SweepStripe& stripe, const cv::Range& columns);
+  void planeCosts(int row, int disparity_px, std::uint8_t* costs);
+  void endCosts(Workers& workers);
+  std::uint8_t* pairCostsOf(SweepStripe& stripe, int row);
+  void knowPairCosts(SweepStripe& stripe, int end_row);
+  void columnSums(SweepStripe& stripe, int row);
+  void windowCosts(SweepStripe& stripe, int row);
+  void jumpPenalties(const SweepStripe& stripe, int row);
+  PathRow pathsOf(int row, int first_column);
+  void pathDown(SweepStripe& stripe, int row);
+  void keep(SweepStripe& stripe, int row);
 
-  SweepInput* input_ = nullptr;
+  const SweepInput* input_ = nullptr;
   const SweepKernels* kernels_ = nullptr;
   cv::Size size_px_;
-  int disparities_ = 0, rows_known_ = 0;
-  std::vector<int> entering_, leaving_;  // columns of the sliding window, mirrored
-  cv::Mat1b pair_costs_;                 // a ring of rows, as many as a window and one
+  int disparities_ = 0, round_rows_ = 1;
+  std::vector<SweepStripe> stripes_;
   cv::Mat1b zeros_;
-  cv::Mat_<std::uint16_t> column_sums_, sums_;
-  cv::Mat1b costs_, from_left_, from_right_, from_above_, lowest_above_, path_sums_;
-  std::vector<std::uint8_t> jump_ahead_, jump_down_;
+  // Of the rows of a round:
+  cv::Mat_<std::uint16_t> sums_;
+  cv::Mat1b costs_, from_left_, from_right_, jump_ahead_, jump_down_;
+  cv::Mat1b from_above_, lowest_above_;
   std::vector<PathWinner> path_winners_;
   cv::Mat1s nearest_, farthest_;  // window costs of the disparities just outside the search
   cv::Mat1b plane_;               // pair costs at one disparity

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "cornerstone/stereo/cost_sweep.h"
 #include "cornerstone/stereo/winner_steps.h"
@@ -15,16 +16,19 @@ namespace cornerstone {
 
 class EdgeCheck {
  public:
-  // Turns kNone into kUniqueness in `rejection` where "clearly more" is less than `smallest_cost_ratio`.
-  void check(const Winners& winners, const SweepInput& input, double smallest_cost_ratio,
-             cv::Mat1b& rejection);
+  struct How {
+    double smallest_cost_ratio;  // what is less is not "clearly more"
+    Workers& workers;
+  };
+  // Turns kNone into kUniqueness in `rejection`.
+  void check(const Winners& winners, const SweepInput& input, const How& how, cv::Mat1b& rejection);
 
  private:
   bool standsOut(const Winners& winners, const SweepInput& input, cv::Point at,
                  double smallest_cost_ratio) const;
 
-  WinnerSteps steps_;
-  cv::Mat1b before_;  // rejections as they came in
+  std::vector<WinnerSteps> steps_;  // by worker
+  cv::Mat1b before_;                // rejections as they came in
 };
 
 }  // namespace cornerstone

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "cornerstone/base/workers.h"
+
 namespace cornerstone {
 
 class GradientFeatures {
@@ -20,7 +22,7 @@ class GradientFeatures {
   static constexpr std::size_t kChannels = 4;
   static constexpr int kLargest = 31;
 
-  void compute(const cv::Mat1b& image);
+  void compute(const cv::Mat1b& image, Workers& workers);
   const cv::Mat1b& channel(std::size_t index) const { return channels_[index]; }
   const cv::Mat1b& smooth() const { return smooth_; }  // the image smoothed by 3 x 3
   cv::Size size() const { return channels_[0].size(); }
@@ -28,8 +30,8 @@ class GradientFeatures {
   int costAt(cv::Point here, const GradientFeatures& other, cv::Point there) const;
   // The same over the 3 x 3 px around each, which lie in the images.
   int costAround(cv::Point here, const GradientFeatures& other, cv::Point there) const;
-  // The same for all pixels whose partner at +offset lies in the image; other costs stay as they are.
-  void costs(const GradientFeatures& other, cv::Point offset, cv::Mat1b& costs) const;
+  // costAt for all pixels of a row whose partner at +offset lies in the image; other costs stay as they are.
+  void costsOfRow(int row, const GradientFeatures& other, cv::Point offset, std::uint8_t* costs) const;
 
  private:
   std::array<cv::Mat1b, kChannels> channels_;

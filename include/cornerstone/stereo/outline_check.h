@@ -20,18 +20,26 @@ namespace cornerstone {
 class OutlineCheck {
  public:
   // Turns kNone into kUniqueness in `rejection`.
-  void check(const Winners& winners, const SweepInput& input, cv::Mat1b& rejection);
+  void check(const Winners& winners, const SweepInput& input, Workers& workers, cv::Mat1b& rejection);
 
  private:
-  void checkSide(const Winners& winners, const cv::Mat1b& grey, cv::Point at, cv::Point outward);
-
-  const std::uint8_t* endsOf(const Winners& winners, int y);
+  struct Found {  // by one worker
+    WinnerSteps steps;
+    std::vector<std::uint8_t> ends;
+    std::vector<cv::Point> outlying;  // to be dropped
+  };
+  struct Ends {  // what is looked at
+    const Winners& winners;
+    const cv::Mat1b& grey;
+    Found& found;
+  };
+  void checkRow(const Ends& in, int y) const;
+  void checkSide(const Ends& in, cv::Point at, cv::Point outward) const;
+  const std::uint8_t* endsOf(const Ends& in, int y) const;
 
   int window_radius_px_ = 0;
-  WinnerSteps steps_;
-  std::vector<std::uint8_t> ends_;
-  cv::Mat1b before_;                 // rejections as they came in
-  std::vector<cv::Point> outlying_;  // to be dropped
+  cv::Mat1b before_;  // rejections as they came in
+  std::vector<Found> found_;
 };
 
 }  // namespace cornerstone

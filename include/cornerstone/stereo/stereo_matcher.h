@@ -5,9 +5,11 @@
 // (subpixel.h) -> surfaces
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
 
 #include "cornerstone/base/params.h"
+#include "cornerstone/base/workers.h"
 #include "cornerstone/stereo/cost_sweep.h"
 #include "cornerstone/stereo/disparity.h"
 #include "cornerstone/stereo/outline_check.h"
@@ -66,6 +68,9 @@ struct StereoParams {
   double smallest_strong_windows = 2;
   // Neighbours that differ by more are on different surfaces.
   double surface_step_px = 1.0;
+  // Processors that one image set may keep busy; the answers are the same with any number. 1 leaves the
+  // others to the rest of the robot; more shorten the delay of large images.
+  int threads = 1;
 };
 void describe(ParamVisitor& visitor, StereoParams& params);
 
@@ -86,6 +91,7 @@ class StereoMatcher {
   void dropSmallSurfaces(Disparity& disparity);
 
   StereoParams params_;
+  std::unique_ptr<Workers> workers_;
   GradientFeatures reference_, right_, top_;
   SweepInput sweep_input_;
   CostSweep cost_sweep_;

@@ -18,6 +18,7 @@ struct SubpixelInput {
   const cv::Mat1b* rejection = nullptr;  // only winners with kNone count
   std::size_t cameras = 2;               // secondary ones: 1 or 2
   int window_px = 7;                     // of the sweep
+  Workers* workers = nullptr;
 };
 
 struct SubpixelParams {
@@ -31,9 +32,9 @@ class SubpixelRefiner {
               cv::Mat1f& sigma_px);
 
  private:
-  void fitEach(const SubpixelInput& input);
   void prepare(cv::Size size);
-  void averageAlong(std::ptrdiff_t step);
+  void fitEach(const SubpixelInput& input, const cv::Range& rows);
+  void averageAlong(std::ptrdiff_t step, Workers& workers);
 
   int radius_px_ = 0;  // of the support, and the width of the planes' borders
   // With a border; disparity far below zero and weight 0 where there is none.

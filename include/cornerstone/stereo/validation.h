@@ -20,6 +20,11 @@ struct ValidationParams {
   int left_right_tolerance_px = 1;  // whole pixels between the answers of two reference pixels seen as one
 };
 
+struct ValidationInput {
+  const Winners& winners;
+  const SweepInput& sweep;
+};
+
 // What a pixel's costs say of its answer: beyond doubt, or not, or that there is nothing to correlate.
 enum class Evidence : std::uint8_t { kWeak = 0, kStrong = 1, kFlat = 2 };
 
@@ -27,24 +32,24 @@ class Validator {
  public:
   // Sets `rejection` to kNone, kOutside, kTexture, kUniqueness, kLeftRight or kRange for every pixel of the
   // image.
-  void check(const Winners& winners, const SweepInput& input, const ValidationParams& params,
+  void check(const ValidationInput& input, const ValidationParams& params, Workers& workers,
              cv::Mat1b& rejection);
 
   // Evidence of each pixel in the last check.
   const cv::Mat1b& evidence() const { return evidence_; }
 
  private:
-  void checkWinners(const Winners& winners, const SweepInput& input, const ValidationParams& params,
+  void checkWinners(const ValidationInput& input, const ValidationParams& params, const cv::Range& rows,
                     cv::Mat1b& rejection);
   void countSteps(const SecondaryView& view, int width);
   // Two reference pixels that a secondary camera would see at one place: only the better matching one can be
-  // right.
-  void checkSecondary(const Winners& winners, const SecondaryView& view, int tolerance_px,
+  // right. Within an area that holds whole lines along the view's shift.
+  void checkSecondary(const Winners& winners, const SecondaryView& view, const cv::Rect& area,
                       cv::Mat1b& rejection);
 
   // A pixel beside a textured surface takes its disparity from the wide windows though nothing matches around
   // it.
-  void checkOwnCosts(const Winners& winners, const SweepInput& input, double largest_share,
+  void checkOwnCosts(const ValidationInput& input, double largest_share, Workers& workers,
                      cv::Mat1b& rejection);
 
   EdgeCheck edge_check_;
@@ -53,6 +58,7 @@ class Validator {
   cv::Mat1b evidence_;
   cv::Mat1i claims_;  // by secondary pixel
   std::vector<int> steps_;
+  int tolerance_px_ = 0;
 };
 
 }  // namespace cornerstone
