@@ -1,5 +1,6 @@
 #include "stereo_sets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
@@ -20,6 +21,7 @@ struct StereoSet {
   cv::Mat1f truth_px;
   cv::Mat1b visible;
   int max_disparity_px = 0;
+  double truth_step_px = 0;
 };
 
 cv::Mat read(const std::string& folder, const std::string& name, int flags) {
@@ -27,6 +29,17 @@ cv::Mat read(const std::string& folder, const std::string& name, int flags) {
   const cv::Mat image = cv::imread(path, flags);
   if (image.empty()) throw InputError(path + ": cannot be read as an image");
   return image;
+}
+
+// The smallest difference between two true disparities.
+double stepOf(const cv::Mat1f& truth_px) {
+  std::vector<float> values(truth_px.begin(), truth_px.end());
+  std::sort(values.begin(), values.end());
+  double step_px = 1;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] > values[i - 1] && values[i - 1] > 0)
+      step_px = std::min<double>(step_px, values[i] - values[i - 1]);
+  return step_px;
 }
 
 StereoSet loadSet(const std::string& folder) {
@@ -40,6 +53,7 @@ StereoSet loadSet(const std::string& folder) {
   double largest_px = 0;
   cv::minMaxLoc(set.truth_px, nullptr, &largest_px);
   set.max_disparity_px = (static_cast<int>(largest_px) / 16 + 1) * 16;  // as StereoBM counts
+  set.truth_step_px = stepOf(set.truth_px);
   return set;
 }
 
@@ -73,27 +87,47 @@ StereoImages spoiled(const StereoImages& images, const Spoiling& how) {
 
 struct SetScore {
   double sets = 0, density = 0, bad1 = 0, false_near = 0, missed = 0, within_1_sigma = 0, within_2_sigma = 0;
-  std::vector<double> ms, ratios;  // of each set; ratios: to StereoBM
+  double offset_px = 0, within_1_net = 0, within_2_net = 0;  // see SigmaShares
+  std::vector<double> ms, ratios;                            // of each set; ratios: to StereoBM
 };
 
+struct Deviation {
+  double error_px, sigma_px;
+};
+
+// Shares of errors within one and two sigma: as they are, and without the truth's own faults: the median
+// error of a set taken out, and the deviation of its truth's steps added to sigma.
+void judgeSigma(std::vector<Deviation>& deviations, double truth_step_px, SetScore& score) {
+  const double count = std::max<double>(1, static_cast<double>(deviations.size()));
+  std::vector<double> errors_px;
+  for (const Deviation& deviation : deviations) errors_px.push_back(deviation.error_px);
+  const double offset_px = median(errors_px), step_sigma_px = truth_step_px / std::sqrt(12.0);
+  score.offset_px += std::abs(offset_px);
+  for (const auto& [error_px, sigma_px] : deviations) {
+    const double net_error_px = std::abs(error_px - offset_px), net_px = std::hypot(sigma_px, step_sigma_px);
+    score.within_1_sigma += (std::abs(error_px) < sigma_px) / count;
+    score.within_2_sigma += (std::abs(error_px) < 2 * sigma_px) / count;
+    score.within_1_net += (net_error_px < net_px) / count;
+    score.within_2_net += (net_error_px < 2 * net_px) / count;
+  }
+}
+
 void judgePixels(const Disparity& answer, const StereoSet& set, SetScore& score) {
-  double pixels = 0, answers = 0, bad1 = 0, within_1 = 0, within_2 = 0;
+  double pixels = 0, answers = 0, bad1 = 0;
+  std::vector<Deviation> deviations;
   for (int y = kBorder_px; y < set.truth_px.rows - kBorder_px; ++y)
     for (int x = kBorder_px; x < set.truth_px.cols - kBorder_px; ++x) {
       if (set.visible(y, x) == 0 || !(set.truth_px(y, x) > 0)) continue;
       ++pixels;
       if (!(answer.disparity_px(y, x) > 0)) continue;
       ++answers;
-      const float error_px = std::abs(answer.disparity_px(y, x) - set.truth_px(y, x));
-      bad1 += error_px > 1;
-      if (answer.sigma_px.empty()) continue;
-      within_1 += error_px < answer.sigma_px(y, x);
-      within_2 += error_px < 2 * answer.sigma_px(y, x);
+      const float error_px = answer.disparity_px(y, x) - set.truth_px(y, x);
+      bad1 += std::abs(error_px) > 1;
+      if (!answer.sigma_px.empty()) deviations.push_back({error_px, answer.sigma_px(y, x)});
     }
   score.density += answers / pixels;
   score.bad1 += bad1 / std::max(answers, 1.0);
-  score.within_1_sigma += within_1 / std::max(answers, 1.0);
-  score.within_2_sigma += within_2 / std::max(answers, 1.0);
+  if (!deviations.empty()) judgeSigma(deviations, set.truth_step_px, score);
 }
 
 void judgeColumns(const Disparity& answer, const StereoSet& set, SetScore& score) {
@@ -139,10 +173,11 @@ void print(const std::string& sets, const Spoiling& how, const Scores& scores) {
   for (const auto& [name, score] : scores) {
     const auto share = [&, sets_count = score.sets](double sum) { return percent(sum / sets_count, 2); };
     const bool has_sigma = score.within_2_sigma > 0;
+    const auto sigma = [&](double sum) { return has_sigma ? share(sum) : std::string(); };
     printRow({sets, how.name, name, share(score.density), share(score.bad1), share(score.false_near),
-              share(score.missed), has_sigma ? share(score.within_1_sigma) : "",
-              has_sigma ? share(score.within_2_sigma) : "", text(median(score.ms)),
-              text(median(score.ratios))});
+              share(score.missed), sigma(score.within_1_sigma), sigma(score.within_2_sigma),
+              has_sigma ? text(score.offset_px / score.sets) : "", sigma(score.within_1_net),
+              sigma(score.within_2_net), text(median(score.ms)), text(median(score.ratios))});
   }
 }
 
@@ -153,10 +188,14 @@ void stereoSetsPart(const std::vector<std::string>& folders) {
       "\n### Image sets with true disparity\n\nMeans over the sets; pixels that every camera sees, 16 px of "
       "border left out. Bad 1 px: of the answers. False near, missed: columns whose largest answer is more "
       "than 1 px nearer, or farther, than the column's nearest true point (bottom fifth of the image left "
-      "out). Within 1 and 2 sigma: of the answers. Spoiled: right and top images. Medians of ms and of the "
+      "out). Within 1 and 2 sigma: of the answers. Net: without what is the truth's own fault, its offset "
+      "from the "
+      "images (median error of a set, given as a mean of its size) and its steps, whose deviation is added "
+      "to "
+      "sigma. Spoiled: right and top images. Medians of ms and of the "
       "ratio to StereoBM.");
   printHead({"sets", "images", "matcher", "density", "bad 1 px", "false near", "missed", "within 1 sigma",
-             "within 2 sigma", "ms", "time / StereoBM"});
+             "within 2 sigma", "offset px", "net 1 sigma", "net 2 sigma", "ms", "time / StereoBM"});
   std::vector<StereoSet> triples, pairs;
   for (const std::string& folder : folders) {
     const StereoSet set = loadSet(folder);

@@ -192,6 +192,39 @@ void average(const AverageRow& row) {
   }
 }
 
+// Half the rise of the means from `before` to `after`; 0 where one of them is on another surface.
+inline cv::v_float32 riseAt(const float* before, const float* after, const cv::v_float32& middle,
+                            const cv::v_float32& largest) {
+  const cv::v_float32 low = cv::vx_load(before), high = cv::vx_load(after);
+  const cv::v_float32 same = (cv::v_abs(low - middle) <= largest) & (cv::v_abs(high - middle) <= largest);
+  return (cv::vx_setall_f32(0.5F) * (high - low)) & same;
+}
+
+void spread(const SpreadRow& row) {
+  using Floats = cv::v_float32;
+  const Floats largest_step = cv::vx_setall_f32(row.largest_step), one = cv::vx_setall_f32(1);
+  const Floats steepest = cv::vx_setall_f32(static_cast<float>(row.reach));  // a disparity a pixel
+  const std::ptrdiff_t down = row.reach * row.step;
+  for (int x = 0; x < row.width; x += Floats::nlanes) {
+    const float* means = row.means + x;
+    const Floats middle = cv::vx_load(means);
+    const Floats right = riseAt(means - row.reach, means + row.reach, middle, steepest);
+    Floats plane = middle - riseAt(means - down, means + down, middle, steepest);
+    const Floats rise_down = middle - plane;
+    Floats squares = cv::vx_setzero_f32(), count = squares;
+    for (int i = -1; i <= 1; ++i, plane += rise_down) {
+      const float* fits = row.fits + x + i * down;
+      for (const Floats& ahead : {cv::vx_load(fits - row.reach) - (plane - right), cv::vx_load(fits) - plane,
+                                  cv::vx_load(fits + row.reach) - (plane + right)}) {
+        const Floats near = cv::v_abs(ahead) <= largest_step;
+        squares += ahead * ahead & near;
+        count += one & near;
+      }
+    }
+    cv::v_store(row.squares + x, squares / cv::v_max(count, one));
+  }
+}
+
 inline cv::v_int32 squashed(const cv::v_int32& difference, const cv::v_float32& noise) {
   const cv::v_float32 half = cv::vx_setall_f32(kLargestFeature / 2.F);
   const cv::v_float32 g = cv::v_cvt_f32(difference);

@@ -94,7 +94,7 @@ class StereoNodelet(StageCase):
         self.assert_lives()
 
     def test_parameters_change_while_it_runs(self):
-        stereo = dict(parameters_of("stereo")["stereo"], max_disparity_px=48, largest_sigma_px=1.5)
+        stereo = dict(parameters_of("stereo")["stereo"], max_disparity_px=48, largest_sigma_px=1.2)
         self.start_stereo(stereo=stereo)
         client = Client("/a/trinocular_stereo/stereo", timeout=20)
         begun = client.get_configuration(timeout=20)

@@ -132,6 +132,35 @@ TEST_P(Kernels, ChooseTheLowestSumAndTellItsMarginAndLead) {
   }
 }
 
+// Nine fits, half a window apart, around a plane; those of another surface do not count, and where a
+// neighbour is on another surface the plane is level.
+TEST_P(Kernels, TellTheSpreadAroundAPlane) {
+  constexpr int kReach = 2, kCols = 64, kFirst = 2 * kCols + 2;
+  cv::Mat1f fits(5, kCols), means(5, kCols), squares(1, kCols);
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < kCols; ++x) means(y, x) = fits(y, x) = 10 + 0.3F * static_cast<float>(x - 2 * y);
+  const auto squareAt = [&](int x) {
+    SpreadRow row;
+    row.fits = fits[0] + kFirst;
+    row.means = means[0] + kFirst;
+    row.step = kCols;
+    row.reach = kReach;
+    row.width = kWidth;
+    row.largest_step = 1;
+    row.squares = squares[0];
+    GetParam()->spread(row);
+    return squares(0, x - 2);
+  };
+  EXPECT_NEAR(squareAt(9), 0, 1e-6);
+  fits(0, 7) += 0.6F;
+  fits(2, 11) -= 0.3F;
+  fits(4, 9) += 1.5F;   // another surface
+  fits(2, 10) += 0.5F;  // not among the nine
+  EXPECT_NEAR(squareAt(9), (0.36F + 0.09F) / 8, 1e-4);
+  means(2, 21) = 30;  // level from left to right: 0.6 off in the left and right columns
+  EXPECT_NEAR(squareAt(19), 6 * 0.36F / 9, 1e-4);
+}
+
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, Kernels, testing::Values(&plainSweepKernels(), &sweepKernels()));
 
 }  // namespace

@@ -79,6 +79,15 @@ struct FitRow {
   float *fits_px = nullptr, *weights = nullptr;
 };
 
+// Mean squares of the distances of fits from the plane through the means around, see SubpixelRefiner.
+struct SpreadRow {
+  const float *fits = nullptr, *means = nullptr;  // of the row, and `reach` pixels around
+  std::ptrdiff_t step = 0;                        // from a row to the next
+  int reach = 0, width = 0;
+  float largest_step = 0;  // fits farther from the plane are those of another surface
+  float* squares = nullptr;
+};
+
 // Features of a row: see GradientFeatures. Whole vectors are read and written beyond the end.
 struct SquashRow {
   const std::uint8_t *ahead = nullptr, *behind = nullptr;
@@ -99,6 +108,7 @@ struct SweepKernels {
   void (*pathDown)(const PathRow& row);
   void (*fit)(const FitRow& row);
   void (*average)(const AverageRow& row);
+  void (*spread)(const SpreadRow& row);
   void (*squash)(const SquashRow& row, std::uint8_t* features);
   // Weights 1 2 1 along and across, over 16; rows[1] is the middle one. Reads one pixel before the row.
   void (*smooth)(const std::uint8_t* const* rows, int width, std::uint8_t* out);
