@@ -2,6 +2,9 @@
 // 5%.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "stereo/synthetic_views.h"
 
 namespace cornerstone {
@@ -55,6 +58,29 @@ TEST(Subpixel, SlantedSurfaceKeepsItsSlope) {
   EXPECT_GT(figures.answers, 0.97 * 160 * 120);
   EXPECT_NEAR(figures.bias_px, 0, 0.03);
   EXPECT_LT(figures.rms_px, 0.1);
+}
+
+// Fits near whole pixels are the surest where cameras are quiet: an average that leant on them would draw all
+// others there, and walls seen at a slant would come out in steps.
+TEST(Subpixel, SlantedSurfaceIsNotDrawnToWholePixels) {
+  const Surface surface{2, 0.115};  // a corridor's wall
+  cv::RNG random(11);
+  const Disparity disparity =
+      matched(viewsOf(Texture({160, 120}, 1.5, 20, random), surface, {0, 1}, random));
+  std::array<double, 8> sums{}, counts{};
+  for (int y = 8; y < 112; ++y) {
+    for (int x = 24; x < 152; ++x) {
+      if (disparity.rejection(y, x) != 0) continue;
+      const double truth_px = surface.disparityAt(x);
+      const auto part = static_cast<std::size_t>(8 * (truth_px - std::floor(truth_px)));
+      sums[part] += disparity.disparity_px(y, x) - truth_px;
+      counts[part] += 1;
+    }
+  }
+  for (std::size_t part = 0; part < 8; ++part) {
+    ASSERT_GT(counts[part], 500);
+    EXPECT_NEAR(sums[part] / counts[part], 0, 0.02) << "at fractions from " << static_cast<double>(part) / 8;
+  }
 }
 
 TEST(Subpixel, SigmaIsHonest) {
