@@ -36,7 +36,7 @@ void Validator::check(const ValidationInput& input, const ValidationParams& para
     workers.share(view.vertical() ? size.width : size.height, [&](int begin, int end) {
       const cv::Rect area = view.vertical() ? cv::Rect(begin, 0, end - begin, size.height)
                                             : cv::Rect(0, begin, size.width, end - begin);
-      checkSecondary(input.winners, view, area, rejection);
+      checkSecondary(input, v, area, rejection);
     });
   }
   checkOwnCosts(input, params.largest_own_share, workers, rejection);
@@ -93,8 +93,10 @@ void Validator::countSteps(const SecondaryView& view, int width) {
   }
 }
 
-void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, const cv::Rect& area,
+void Validator::checkSecondary(const ValidationInput& input, std::size_t view_index, const cv::Rect& area,
                                cv::Mat1b& rejection) {
+  const Winners& winners = input.winners;
+  const SecondaryView& view = input.sweep.views[view_index];
   const int* steps = steps_.data();
   for (int y = area.y; y < area.br().y; ++y)
     std::fill_n(claims_[y] + area.x, area.width, std::numeric_limits<int>::max());
@@ -109,13 +111,18 @@ void Validator::checkSecondary(const Winners& winners, const SecondaryView& view
   }
   for (int y = area.y; y < area.br().y; ++y) {
     const short *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
+    const short* seen_by_first = view_index > 0 ? input.sweep.views[0].seenOf(y) : nullptr;
     const int* claims = claims_[y];
     std::uint8_t* rejections = rejection[y];
     for (int x = area.x; x < area.br().x; ++x) {
-      if (rejections[x] != 0 || disparities_px[x] > seen[x]) continue;
+      const bool by_first = rejections[x] == codeOf(Rejection::kLeftRight);
+      if ((rejections[x] != 0 && !by_first) || disparities_px[x] > seen[x]) continue;
       const int claimed_px = claims[x + steps[disparities_px[x]]] & (kCostUnit - 1);
-      if (std::abs(claimed_px - disparities_px[x]) > tolerance_px_)
-        rejections[x] = codeOf(Rejection::kLeftRight);
+      const bool contradicts = std::abs(claimed_px - disparities_px[x]) > tolerance_px_;
+      const bool seen_by_both = seen_by_first != nullptr && disparities_px[x] <= seen_by_first[x];
+      if (contradicts || by_first)
+        rejections[x] =
+            codeOf(seen_by_both && contradicts != by_first ? Rejection::kPairs : Rejection::kLeftRight);
     }
   }
 }
