@@ -16,7 +16,10 @@ constexpr float kFlatGain_sigmas = 3;
 // Of a pixel whose match differs by rounding only, of kChanceCost.
 constexpr int kLeastPairCost = 5;
 
-constexpr std::uint8_t codeOf(Rejection rejection) { return static_cast<std::uint8_t>(rejection); }
+template <typename Code>
+constexpr std::uint8_t codeOf(Code code) {
+  return static_cast<std::uint8_t>(code);
+}
 
 }  // namespace
 
@@ -46,37 +49,34 @@ void Validator::check(const ValidationInput& input, const ValidationParams& para
 void Validator::checkWinners(const ValidationInput& input, const ValidationParams& params,
                              const cv::Range& rows, cv::Mat1b& rejection) {
   const Winners& winners = input.winners;
-  const int smallest_margin = static_cast<int>(std::lround(params.smallest_margin_share * kSearchChance));
-  const int last_px = input.sweep.max_disparity_px;
   const CostNoise noise(input.sweep.window_px, input.sweep.view_count);
-  const float flat_gain = kFlatGain_sigmas * noise.share();
   // Of chance matches both margin and lead are small: their product tells best what is beyond doubt.
   const int window_area = input.sweep.window_px * input.sweep.window_px;
   const double unit = static_cast<double>(kSearchChance) * kSearchChance / (window_area * kChanceCost);
-  const auto strong_product = static_cast<float>(params.strong_product * unit) * noise.share();
-  const int least_cost = kLeastPairCost * window_area;
+  WinnerRow row;
+  row.width = rejection.cols;
+  row.last_px = input.sweep.max_disparity_px;
+  row.smallest_margin = static_cast<int>(std::lround(params.smallest_margin_share * kSearchChance));
+  row.least_cost = kLeastPairCost * window_area;
+  row.no_cost = Winners::kNoCost;
+  row.flat_gain = kFlatGain_sigmas * noise.share();
+  row.strong_product = static_cast<float>(params.strong_product * unit) * noise.share();
+  row.outside = codeOf(Rejection::kOutside);
+  row.texture = codeOf(Rejection::kTexture);
+  row.uniqueness = codeOf(Rejection::kUniqueness);
+  row.range = codeOf(Rejection::kRange);
+  row.weak = codeOf(Evidence::kWeak);
+  row.flat = codeOf(Evidence::kFlat);
+  row.strong = codeOf(Evidence::kStrong);
   for (int y = rows.start; y < rows.end; ++y) {
-    const short *costs = winners.cost[y], *before = winners.cost_before[y], *after = winners.cost_after[y];
-    const short* disparities_px = winners.disparity_px[y];
-    const short* chance = winners.chance_cost[y];
-    const std::uint8_t *margins = winners.margin[y], *leads = winners.lead[y];
-    std::uint8_t *rejections = rejection[y], *evidence = evidence_[y];
-    for (int x = 0; x < rejection.cols; ++x) {
-      const int disparity_px = disparities_px[x];
-      const bool outward = (disparity_px <= 1 && before[x] < costs[x]) ||
-                           (disparity_px >= last_px && after[x] < costs[x]) || disparity_px > last_px;
-      Rejection verdict = outward ? Rejection::kRange : Rejection::kNone;
-      const int gain = std::max(chance[x] - costs[x], 0);
-      const bool flat = static_cast<float>(gain) <= flat_gain * static_cast<float>(chance[x]);
-      if (margins[x] < smallest_margin) verdict = flat ? Rejection::kTexture : Rejection::kUniqueness;
-      if (costs[x] == Winners::kNoCost) verdict = Rejection::kOutside;
-      rejections[x] = codeOf(verdict);
-      const bool strong = static_cast<float>(margins[x] * leads[x]) >
-                          strong_product * static_cast<float>(costs[x] + least_cost);
-      evidence[x] = static_cast<std::uint8_t>(strong ? Evidence::kStrong
-                                              : flat ? Evidence::kFlat
-                                                     : Evidence::kWeak);
-    }
+    row.disparities_px = winners.disparity_px[y];
+    row.costs = winners.cost[y];
+    row.before = winners.cost_before[y];
+    row.after = winners.cost_after[y];
+    row.chance = winners.chance_cost[y];
+    row.margins = winners.margin[y];
+    row.leads = winners.lead[y];
+    sweepKernels().judge(row, rejection[y], evidence_[y]);
   }
 }
 
@@ -131,7 +131,7 @@ void Validator::checkOwnCosts(const ValidationInput& input, double largest_share
                               cv::Mat1b& rejection) {
   const int window_px = input.sweep.window_px;
   box_sums_.compute(input.winners.own_cost, window_px, own_costs_);
-  const double largest = largest_share * kChanceCost * window_px * window_px;
+  const int largest = static_cast<int>(largest_share * kChanceCost * window_px * window_px);
   workers.share(rejection.rows, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const short* costs = own_costs_[y];

@@ -29,6 +29,9 @@ struct Disparity {
   TrinocularRig rig;
 };
 
+// Takes a pixel's answer away.
+void reject(Disparity& disparity, cv::Point at, Rejection why);
+
 // Share of the pixels with texture that have an answer; empty: hardly any has texture. Near 1 as a rule. When
 // the images do not fit the rig (cameras swapped, another rig's calibration, images of different instants),
 // pixels with texture match nowhere.
