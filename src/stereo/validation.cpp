@@ -98,12 +98,13 @@ void Validator::checkSecondary(const ValidationInput& input, std::size_t view_in
   const Winners& winners = input.winners;
   const SecondaryView& view = input.sweep.views[view_index];
   const int* steps = steps_.data();
+  const int end_x = area.br().x, tolerance_px = tolerance_px_;
   for (int y = area.y; y < area.br().y; ++y)
     std::fill_n(claims_[y] + area.x, area.width, std::numeric_limits<int>::max());
   for (int y = area.y; y < area.br().y; ++y) {
     const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
     int* claims = claims_[y];
-    for (int x = area.x; x < area.br().x; ++x) {
+    for (int x = area.x; x < end_x; ++x) {
       if (disparities_px[x] > seen[x]) continue;
       int& claim = claims[x + steps[disparities_px[x]]];
       claim = std::min(claim, costs[x] * kCostUnit + disparities_px[x]);
@@ -114,15 +115,17 @@ void Validator::checkSecondary(const ValidationInput& input, std::size_t view_in
     const short* seen_by_first = view_index > 0 ? input.sweep.views[0].seenOf(y) : nullptr;
     const int* claims = claims_[y];
     std::uint8_t* rejections = rejection[y];
-    for (int x = area.x; x < area.br().x; ++x) {
+    for (int x = area.x; x < end_x; ++x) {
+      const int disparity_px = disparities_px[x];
+      if (disparity_px > seen[x]) continue;
+      const int claimed_px = claims[x + steps[disparity_px]] & (kCostUnit - 1);
+      const bool contradicts = std::abs(claimed_px - disparity_px) > tolerance_px;
       const bool by_first = rejections[x] == codeOf(Rejection::kLeftRight);
-      if ((rejections[x] != 0 && !by_first) || disparities_px[x] > seen[x]) continue;
-      const int claimed_px = claims[x + steps[disparities_px[x]]] & (kCostUnit - 1);
-      const bool contradicts = std::abs(claimed_px - disparities_px[x]) > tolerance_px_;
-      const bool seen_by_both = seen_by_first != nullptr && disparities_px[x] <= seen_by_first[x];
-      if (contradicts || by_first)
-        rejections[x] =
-            codeOf(seen_by_both && contradicts != by_first ? Rejection::kPairs : Rejection::kLeftRight);
+      if (!contradicts && !by_first) continue;
+      if (rejections[x] != 0 && !by_first) continue;
+      const bool seen_by_both = seen_by_first != nullptr && disparity_px <= seen_by_first[x];
+      rejections[x] =
+          codeOf(seen_by_both && contradicts != by_first ? Rejection::kPairs : Rejection::kLeftRight);
     }
   }
 }
