@@ -171,9 +171,11 @@ void CostSweep::planeCosts(int row, int disparity_px, std::uint8_t* costs) {
     input_->reference->costsOfRow(row, view.features(), view.offsetAt(disparity_px), camera_planes_[v][row]);
   }
   const std::uint8_t *one = camera_planes_[0][row], *other = camera_planes_[1][row];
-  for (int x = 0; x < size_px_.width; ++x) {
-    const int a = one[x] == kUnseen ? other[x] : one[x], b = other[x] == kUnseen ? a : other[x];
-    costs[x] = a == kUnseen ? costs[x] : static_cast<std::uint8_t>(a + b);
+  const int width = size_px_.width;
+  for (int x = 0; x < width; ++x) {
+    const std::uint8_t a = one[x] == kUnseen ? other[x] : one[x], b = other[x] == kUnseen ? a : other[x];
+    const auto sum = static_cast<std::uint8_t>(a + b);
+    costs[x] = a == kUnseen ? costs[x] : sum;
   }
 }
 

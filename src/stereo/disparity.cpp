@@ -2,6 +2,12 @@
 
 namespace cornerstone {
 
+void reject(Disparity& disparity, cv::Point at, Rejection why) {
+  disparity.disparity_px(at) = 0;
+  disparity.sigma_px(at) = 0;
+  disparity.rejection(at) = static_cast<std::uint8_t>(why);
+}
+
 std::optional<double> matchedShare(const Disparity& disparity) {
   constexpr double kLeastTexture = 0.05;  // of the image
   const auto countOf = [&](Rejection why) {

@@ -78,13 +78,14 @@ int GradientFeatures::costAt(cv::Point here, const GradientFeatures& other, cv::
 int GradientFeatures::costAround(cv::Point here, const GradientFeatures& other, cv::Point there) const {
   // Four pixels of four bytes make a vector; the fourth does not count.
   const cv::v_uint8x16 three = cv::v_reinterpret_as_u8(cv::v_uint32x4(~0u, ~0u, ~0u, 0));
-  int cost = 0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    const auto* a = together_.ptr<std::uint8_t>(here.y + dy, here.x - 1);
-    const auto* b = other.together_.ptr<std::uint8_t>(there.y + dy, there.x - 1);
-    cost += static_cast<int>(cv::v_reduce_sad(cv::v_load(a) & three, cv::v_load(b) & three));
-  }
-  return cost;
+  const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(together_.step);
+  const auto* a = together_.ptr<std::uint8_t>(here.y - 1, here.x - 1);
+  const auto* b = other.together_.ptr<std::uint8_t>(there.y - 1, there.x - 1);
+  const auto ofRow = [&](int row) {
+    return cv::v_absdiff(cv::v_load(a + row * step), cv::v_load(b + row * step));
+  };
+  static_assert(3 * kLargest < 256);
+  return static_cast<int>(cv::v_reduce_sum((ofRow(0) + ofRow(1) + ofRow(2)) & three));
 }
 
 void GradientFeatures::costsOfRow(int row, const GradientFeatures& other, cv::Point offset,
@@ -97,7 +98,15 @@ void GradientFeatures::costsOfRow(int row, const GradientFeatures& other, cv::Po
     a[c] = channels_[c][row];
     b[c] = other.channels_[c][row + offset.y] + offset.x;
   }
-  for (int x = seen.x; x < seen.br().x; ++x)
+  const auto difference = [](const std::uint8_t* one, const std::uint8_t* another) {
+    return cv::v_absdiff(cv::v_load(one), cv::v_load(another));
+  };
+  constexpr int kLanes = cv::v_uint8x16::nlanes;
+  int x = seen.x;
+  for (; x + kLanes <= seen.br().x; x += kLanes)
+    cv::v_store(costs + x, difference(a[0] + x, b[0] + x) + difference(a[1] + x, b[1] + x) +
+                               difference(a[2] + x, b[2] + x) + difference(a[3] + x, b[3] + x));
+  for (; x < seen.br().x; ++x)
     costs[x] = static_cast<std::uint8_t>(std::abs(a[0][x] - b[0][x]) + std::abs(a[1][x] - b[1][x]) +
                                          std::abs(a[2][x] - b[2][x]) + std::abs(a[3][x] - b[3][x]));
 }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "cornerstone/stereo/disparity.h"
-
 namespace cornerstone {
 namespace {
 
@@ -107,7 +105,8 @@ void OutlineCheck::checkRow(const Ends& in, int y) const {
 }
 
 void OutlineCheck::check(const Winners& winners, const SweepInput& input, Workers& workers,
-                         cv::Mat1b& rejection) {
+                         Disparity& disparity) {
+  const cv::Mat1b& rejection = disparity.rejection;
   window_radius_px_ = input.window_px / 2;
   rejection.copyTo(before_);
   found_.resize(static_cast<std::size_t>(workers.count()));
@@ -119,7 +118,7 @@ void OutlineCheck::check(const Winners& winners, const SweepInput& input, Worker
   });
   for (const Found& found : found_)
     for (const cv::Point at : found.outlying)
-      if (rejection(at) == 0) rejection(at) = static_cast<std::uint8_t>(Rejection::kUniqueness);
+      if (rejection(at) == 0) reject(disparity, at, Rejection::kUniqueness);
 }
 
 }  // namespace cornerstone

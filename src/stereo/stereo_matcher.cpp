@@ -41,24 +41,6 @@ void requireUsable(const StereoParams& params) {
 
 std::string textOf(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
-void reject(Disparity& disparity, int y, int x, Rejection why) {
-  disparity.disparity_px(y, x) = 0;
-  disparity.sigma_px(y, x) = 0;
-  disparity.rejection(y, x) = static_cast<std::uint8_t>(why);
-}
-
-void clearRejected(Disparity& disparity, const cv::Range& rows) {
-  for (int y = rows.start; y < rows.end; ++y) {
-    const std::uint8_t* rejections = disparity.rejection[y];
-    float *disparities_px = disparity.disparity_px[y], *sigmas_px = disparity.sigma_px[y];
-    for (int x = 0; x < disparity.rejection.cols; ++x) {
-      if (rejections[x] == 0) continue;
-      disparities_px[x] = 0;
-      sigmas_px[x] = 0;
-    }
-  }
-}
-
 }  // namespace
 
 void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
@@ -96,10 +78,7 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
                    *workers_, disparity.rejection);
   refine(disparity);
   dropSmallSurfaces(disparity);
-  outline_check_.check(*winners_, sweep_input_, *workers_, disparity.rejection);
-  workers_->share(disparity.rejection.rows, [&](int begin, int end) {
-    clearRejected(disparity, {begin, end});
-  });
+  outline_check_.check(*winners_, sweep_input_, *workers_, disparity);
 }
 
 int StereoMatcher::windowFor(int image_width_px) const {
@@ -138,7 +117,7 @@ void StereoMatcher::refine(Disparity& disparity) {
   workers_->share(disparity.rejection.rows, [&](int begin, int end) {
     for (int y = begin; y < end; ++y)
       for (int x = 0; x < disparity.rejection.cols; ++x)
-        if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, y, x, Rejection::kTexture);
+        if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, {x, y}, Rejection::kTexture);
   });
 }
 
@@ -155,7 +134,7 @@ void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
       if (verdicts[x] == SurfaceFilter::kGood) continue;
       const bool flat = evidence[x] == static_cast<std::uint8_t>(Evidence::kFlat);
       const bool small = verdicts[x] == SurfaceFilter::kSmall;
-      reject(disparity, y, x,
+      reject(disparity, {x, y},
              flat    ? Rejection::kTexture
              : small ? Rejection::kSurface
                      : Rejection::kUniqueness);

@@ -11,7 +11,6 @@ namespace cornerstone {
 namespace {
 
 constexpr int kSlack = 16;  // kernels work in whole vectors
-constexpr float kLeastWeight = 1e-6F;
 constexpr float kNone_px = -1e4F;
 constexpr float kLargestStep_px = 1.0F;
 
@@ -63,17 +62,21 @@ void SubpixelRefiner::averageRow(int y, std::ptrdiff_t step, const Planes& from,
   sweepKernels().average(row);
 }
 
-// The mean squares take the place of the averages along lines, which nobody needs any more.
-void SubpixelRefiner::spreadRow(int y, int reach_px) {
-  SpreadRow row;
+// The sigmas take the place of the averages along lines, which nobody needs any more.
+void SubpixelRefiner::sigmaRow(int y, int reach_px) {
+  const auto each_way = static_cast<float>(2 * radius_px_ + 1);
+  SigmaRow row;
   row.fits = fits_.rowOf(fits_.values_px, y);
   row.means = means_.rowOf(means_.values_px, y);
   row.step = fits_.values_px.cols;
   row.reach = reach_px;
   row.width = fits_.width();
   row.largest_step = kLargestStep_px;
-  row.squares = lines_.rowOf(lines_.values_px, y);
-  sweepKernels().spread(row);
+  row.weights = means_.rowOf(means_.weights, y);
+  row.noise_variance = kNoiseShare * kNoiseShare * each_way * each_way;
+  row.model_variance = kModelSigma_px * kModelSigma_px;
+  row.sigmas = lines_.rowOf(lines_.values_px, y);
+  sweepKernels().sigma(row);
 }
 
 void SubpixelRefiner::Planes::prepare(cv::Size size, int border) {
@@ -106,7 +109,7 @@ void SubpixelRefiner::refine(const SubpixelInput& input, const SubpixelParams& p
   });
   workers.share(size.height, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
-      spreadRow(y, reach_px);
+      sigmaRow(y, reach_px);
       writeRow(y, (*input.rejection)[y], disparity_px[y], sigma_px[y]);
     }
   });
@@ -114,16 +117,11 @@ void SubpixelRefiner::refine(const SubpixelInput& input, const SubpixelParams& p
 
 void SubpixelRefiner::writeRow(int y, const std::uint8_t* rejections, float* disparities_px,
                                float* sigmas_px) const {
-  const float each_way = static_cast<float>(2 * radius_px_ + 1),
-              noise_share = kNoiseShare * kNoiseShare * each_way * each_way;
-  const float *means = means_.rowOf(means_.values_px, y), *weights = means_.rowOf(means_.weights, y),
-              *squares = lines_.rowOf(lines_.values_px, y);
-  for (int x = 0; x < means_.width(); ++x) {
-    const bool answered = rejections[x] == 0;
-    const float variance =
-        noise_share / std::max(weights[x], kLeastWeight) + squares[x] + kModelSigma_px * kModelSigma_px;
-    disparities_px[x] = answered ? means[x] : 0;
-    sigmas_px[x] = answered ? std::sqrt(variance) : 0;
+  const float *means = means_.rowOf(means_.values_px, y), *sigmas = lines_.rowOf(lines_.values_px, y);
+  const int width = means_.width();
+  for (int x = 0; x < width; ++x) {
+    disparities_px[x] = rejections[x] == 0 ? means[x] : 0;
+    sigmas_px[x] = rejections[x] == 0 ? sigmas[x] : 0;
   }
 }
 

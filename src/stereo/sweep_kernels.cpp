@@ -11,8 +11,8 @@ const SweepKernels& sweepKernelsAvx2();
 #endif
 
 const SweepKernels& plainSweepKernels() {
-  static const SweepKernels plain{kLanes, pairCosts, slide,  windowCosts, pathsAlong, pathDown,
-                                  fit,    average,   spread, squash,      smooth};
+  static const SweepKernels plain{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown,
+                                  fit,    average,   sigma, judge,       squash,     smooth};
   return plain;
 }
 

@@ -11,8 +11,8 @@ namespace cornerstone {
 
 const SweepKernels& sweepKernelsAvx2();
 const SweepKernels& sweepKernelsAvx2() {
-  static const SweepKernels kernels{kLanes, pairCosts, slide,  windowCosts, pathsAlong, pathDown,
-                                    fit,    average,   spread, squash,      smooth};
+  static const SweepKernels kernels{kLanes, pairCosts, slide, windowCosts, pathsAlong, pathDown,
+                                    fit,    average,   sigma, judge,       squash,     smooth};
   return kernels;
 }
 

@@ -3,6 +3,7 @@
 // function, and it must not be one for a processor that has more.
 #pragma once
 
+#include "answer_kernels_impl.h"
 #include "sweep_paths_impl.h"
 #include "sweep_vectors.h"
 
@@ -118,118 +119,6 @@ void windowCosts(const WindowRow& given, std::uint16_t* sums, std::uint8_t* cost
     }
     lowest = bytesOf(cv::v_reduce_min(lowest));
     for (int i = 0; i < row.disparities; i += kLanes) cv::v_store(costs + i, cv::vx_load(costs + i) - lowest);
-  }
-}
-
-inline cv::v_float32 floatsOf(const short* values) { return cv::v_cvt_f32(cv::vx_load_expand(values)); }
-
-inline void fitVector(const FitRow& row, int x) {
-  using Floats = cv::v_float32;
-  const Floats half = cv::vx_setall_f32(0.5F), zero = cv::vx_setzero_f32();
-  const Floats cost = floatsOf(row.cost + x);
-  const Floats fall = floatsOf(row.before + x) - cost, rise = floatsOf(row.after + x) - cost;
-  const Floats step = cv::v_max(cv::v_max(fall, rise), cv::vx_setall_f32(1));
-  const Floats twice = step + step;
-  const Floats ahead = cv::v_min(cv::v_max((fall - rise) / twice, zero - half), half);
-  const Floats root_weight =
-      twice / (cv::vx_setall_f32(row.noise_share) * (cost + cv::vx_setall_f32(row.least_cost)));
-  const cv::v_int32 rejection = cv::v_reinterpret_as_s32(cv::vx_load_expand_q(row.rejections + x));
-  const Floats answered = cv::v_reinterpret_as_f32(rejection == cv::vx_setzero_s32());
-  const Floats fit = floatsOf(row.whole_px + x) + ahead;
-  cv::v_store(row.fits_px + x, cv::v_select(answered, fit, cv::vx_setall_f32(row.none_px)));
-  cv::v_store(row.weights + x, root_weight * root_weight & answered);
-}
-
-// A row of less than a vector, in a row of one.
-void fitNarrow(const FitRow& row) {
-  constexpr int kFloats = cv::v_float32::nlanes;
-  short whole_px[kFloats] = {}, before[kFloats] = {}, cost[kFloats] = {}, after[kFloats] = {};
-  std::uint8_t rejections[kLanes] = {};
-  float fits_px[kFloats], weights[kFloats];
-  FitRow wide = row;
-  for (int x = 0; x < row.width; ++x) {
-    whole_px[x] = row.whole_px[x];
-    before[x] = row.before[x];
-    cost[x] = row.cost[x];
-    after[x] = row.after[x];
-    rejections[x] = row.rejections[x];
-  }
-  wide.whole_px = whole_px;
-  wide.before = before;
-  wide.cost = cost;
-  wide.after = after;
-  wide.rejections = rejections;
-  wide.fits_px = fits_px;
-  wide.weights = weights;
-  fitVector(wide, 0);
-  for (int x = 0; x < row.width; ++x) {
-    row.fits_px[x] = fits_px[x];
-    row.weights[x] = weights[x];
-  }
-}
-
-void fit(const FitRow& row) {
-  constexpr int kFloats = cv::v_float32::nlanes;
-  if (row.width < kFloats) return fitNarrow(row);
-  for (int x = 0; x < row.width - kFloats; x += kFloats) fitVector(row, x);
-  fitVector(row, row.width - kFloats);
-}
-
-// Neighbours count in pairs of one weight, that of the mean of the two: on a slanted surface the mean would
-// else be drawn to the side with the better fits, and those lie where the truth is near a whole pixel.
-void average(const AverageRow& row) {
-  using Floats = cv::v_float32;
-  const Floats largest_step = cv::vx_setall_f32(row.largest_step), least = cv::vx_setall_f32(1e-12F),
-               twice = cv::vx_setall_f32(2);
-  for (int x = 0; x < row.width; x += Floats::nlanes) {
-    const Floats middle = cv::vx_load(row.values + x);
-    Floats sum = cv::vx_setzero_f32(), weights = cv::vx_load(row.weights + x), all_weights = weights;
-    for (int i = 1; i <= row.radius; ++i) {
-      const std::ptrdiff_t step = i * row.step;
-      const Floats ahead = cv::vx_load(row.values + x + step) - middle;
-      const Floats behind = cv::vx_load(row.values + x - step) - middle;
-      const Floats one = cv::vx_load(row.weights + x + step) & (cv::v_abs(ahead) <= largest_step);
-      const Floats other = cv::vx_load(row.weights + x - step) & (cv::v_abs(behind) <= largest_step);
-      const Floats weight = twice * one * other / cv::v_max(one + other, least);
-      sum += weight * (ahead + behind);
-      weights += twice * weight;
-      all_weights += one + other;
-    }
-    cv::v_store(row.means + x, middle + sum / cv::v_max(weights, least));
-    cv::v_store(row.weight_sums + x, all_weights);
-  }
-}
-
-// Half the rise of the means from `before` to `after`; 0 where one of them is on another surface.
-inline cv::v_float32 riseAt(const float* before, const float* after, const cv::v_float32& middle,
-                            const cv::v_float32& largest) {
-  const cv::v_float32 low = cv::vx_load(before), high = cv::vx_load(after);
-  const cv::v_float32 same = (cv::v_abs(low - middle) <= largest) & (cv::v_abs(high - middle) <= largest);
-  return (cv::vx_setall_f32(0.5F) * (high - low)) & same;
-}
-
-void spread(const SpreadRow& row) {
-  using Floats = cv::v_float32;
-  const Floats largest_step = cv::vx_setall_f32(row.largest_step), one = cv::vx_setall_f32(1);
-  const Floats steepest = cv::vx_setall_f32(static_cast<float>(row.reach));  // a disparity a pixel
-  const std::ptrdiff_t down = row.reach * row.step;
-  for (int x = 0; x < row.width; x += Floats::nlanes) {
-    const float* means = row.means + x;
-    const Floats middle = cv::vx_load(means);
-    const Floats right = riseAt(means - row.reach, means + row.reach, middle, steepest);
-    Floats plane = middle - riseAt(means - down, means + down, middle, steepest);
-    const Floats rise_down = middle - plane;
-    Floats squares = cv::vx_setzero_f32(), count = squares;
-    for (int i = -1; i <= 1; ++i, plane += rise_down) {
-      const float* fits = row.fits + x + i * down;
-      for (const Floats& ahead : {cv::vx_load(fits - row.reach) - (plane - right), cv::vx_load(fits) - plane,
-                                  cv::vx_load(fits + row.reach) - (plane + right)}) {
-        const Floats near = cv::v_abs(ahead) <= largest_step;
-        squares += ahead * ahead & near;
-        count += one & near;
-      }
-    }
-    cv::v_store(row.squares + x, squares / cv::v_max(count, one));
   }
 }
 

@@ -16,7 +16,10 @@ constexpr float kFlatGain_sigmas = 3;
 // Of a pixel whose match differs by rounding only, of kChanceCost.
 constexpr int kLeastPairCost = 5;
 
-constexpr std::uint8_t codeOf(Rejection rejection) { return static_cast<std::uint8_t>(rejection); }
+template <typename Code>
+constexpr std::uint8_t codeOf(Code code) {
+  return static_cast<std::uint8_t>(code);
+}
 
 }  // namespace
 
@@ -36,7 +39,7 @@ void Validator::check(const ValidationInput& input, const ValidationParams& para
     workers.share(view.vertical() ? size.width : size.height, [&](int begin, int end) {
       const cv::Rect area = view.vertical() ? cv::Rect(begin, 0, end - begin, size.height)
                                             : cv::Rect(0, begin, size.width, end - begin);
-      checkSecondary(input.winners, view, area, rejection);
+      checkSecondary(input, v, area, rejection);
     });
   }
   checkOwnCosts(input, params.largest_own_share, workers, rejection);
@@ -46,37 +49,34 @@ void Validator::check(const ValidationInput& input, const ValidationParams& para
 void Validator::checkWinners(const ValidationInput& input, const ValidationParams& params,
                              const cv::Range& rows, cv::Mat1b& rejection) {
   const Winners& winners = input.winners;
-  const int smallest_margin = static_cast<int>(std::lround(params.smallest_margin_share * kSearchChance));
-  const int last_px = input.sweep.max_disparity_px;
   const CostNoise noise(input.sweep.window_px, input.sweep.view_count);
-  const float flat_gain = kFlatGain_sigmas * noise.share();
   // Of chance matches both margin and lead are small: their product tells best what is beyond doubt.
   const int window_area = input.sweep.window_px * input.sweep.window_px;
   const double unit = static_cast<double>(kSearchChance) * kSearchChance / (window_area * kChanceCost);
-  const auto strong_product = static_cast<float>(params.strong_product * unit) * noise.share();
-  const int least_cost = kLeastPairCost * window_area;
+  WinnerRow row;
+  row.width = rejection.cols;
+  row.last_px = input.sweep.max_disparity_px;
+  row.smallest_margin = static_cast<int>(std::lround(params.smallest_margin_share * kSearchChance));
+  row.least_cost = kLeastPairCost * window_area;
+  row.no_cost = Winners::kNoCost;
+  row.flat_gain = kFlatGain_sigmas * noise.share();
+  row.strong_product = static_cast<float>(params.strong_product * unit) * noise.share();
+  row.outside = codeOf(Rejection::kOutside);
+  row.texture = codeOf(Rejection::kTexture);
+  row.uniqueness = codeOf(Rejection::kUniqueness);
+  row.range = codeOf(Rejection::kRange);
+  row.weak = codeOf(Evidence::kWeak);
+  row.flat = codeOf(Evidence::kFlat);
+  row.strong = codeOf(Evidence::kStrong);
   for (int y = rows.start; y < rows.end; ++y) {
-    const short *costs = winners.cost[y], *before = winners.cost_before[y], *after = winners.cost_after[y];
-    const short* disparities_px = winners.disparity_px[y];
-    const short* chance = winners.chance_cost[y];
-    const std::uint8_t *margins = winners.margin[y], *leads = winners.lead[y];
-    std::uint8_t *rejections = rejection[y], *evidence = evidence_[y];
-    for (int x = 0; x < rejection.cols; ++x) {
-      const int disparity_px = disparities_px[x];
-      const bool outward = (disparity_px <= 1 && before[x] < costs[x]) ||
-                           (disparity_px >= last_px && after[x] < costs[x]) || disparity_px > last_px;
-      Rejection verdict = outward ? Rejection::kRange : Rejection::kNone;
-      const int gain = std::max(chance[x] - costs[x], 0);
-      const bool flat = static_cast<float>(gain) <= flat_gain * static_cast<float>(chance[x]);
-      if (margins[x] < smallest_margin) verdict = flat ? Rejection::kTexture : Rejection::kUniqueness;
-      if (costs[x] == Winners::kNoCost) verdict = Rejection::kOutside;
-      rejections[x] = codeOf(verdict);
-      const bool strong = static_cast<float>(margins[x] * leads[x]) >
-                          strong_product * static_cast<float>(costs[x] + least_cost);
-      evidence[x] = static_cast<std::uint8_t>(strong ? Evidence::kStrong
-                                              : flat ? Evidence::kFlat
-                                                     : Evidence::kWeak);
-    }
+    row.disparities_px = winners.disparity_px[y];
+    row.costs = winners.cost[y];
+    row.before = winners.cost_before[y];
+    row.after = winners.cost_after[y];
+    row.chance = winners.chance_cost[y];
+    row.margins = winners.margin[y];
+    row.leads = winners.lead[y];
+    sweepKernels().judge(row, rejection[y], evidence_[y]);
   }
 }
 
@@ -93,15 +93,18 @@ void Validator::countSteps(const SecondaryView& view, int width) {
   }
 }
 
-void Validator::checkSecondary(const Winners& winners, const SecondaryView& view, const cv::Rect& area,
+void Validator::checkSecondary(const ValidationInput& input, std::size_t view_index, const cv::Rect& area,
                                cv::Mat1b& rejection) {
+  const Winners& winners = input.winners;
+  const SecondaryView& view = input.sweep.views[view_index];
   const int* steps = steps_.data();
+  const int end_x = area.br().x, tolerance_px = tolerance_px_;
   for (int y = area.y; y < area.br().y; ++y)
     std::fill_n(claims_[y] + area.x, area.width, std::numeric_limits<int>::max());
   for (int y = area.y; y < area.br().y; ++y) {
     const short *costs = winners.cost[y], *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
     int* claims = claims_[y];
-    for (int x = area.x; x < area.br().x; ++x) {
+    for (int x = area.x; x < end_x; ++x) {
       if (disparities_px[x] > seen[x]) continue;
       int& claim = claims[x + steps[disparities_px[x]]];
       claim = std::min(claim, costs[x] * kCostUnit + disparities_px[x]);
@@ -109,13 +112,20 @@ void Validator::checkSecondary(const Winners& winners, const SecondaryView& view
   }
   for (int y = area.y; y < area.br().y; ++y) {
     const short *disparities_px = winners.disparity_px[y], *seen = view.seenOf(y);
+    const short* seen_by_first = view_index > 0 ? input.sweep.views[0].seenOf(y) : nullptr;
     const int* claims = claims_[y];
     std::uint8_t* rejections = rejection[y];
-    for (int x = area.x; x < area.br().x; ++x) {
-      if (rejections[x] != 0 || disparities_px[x] > seen[x]) continue;
-      const int claimed_px = claims[x + steps[disparities_px[x]]] & (kCostUnit - 1);
-      if (std::abs(claimed_px - disparities_px[x]) > tolerance_px_)
-        rejections[x] = codeOf(Rejection::kLeftRight);
+    for (int x = area.x; x < end_x; ++x) {
+      const int disparity_px = disparities_px[x];
+      if (disparity_px > seen[x]) continue;
+      const int claimed_px = claims[x + steps[disparity_px]] & (kCostUnit - 1);
+      const bool contradicts = std::abs(claimed_px - disparity_px) > tolerance_px;
+      const bool by_first = rejections[x] == codeOf(Rejection::kLeftRight);
+      if (!contradicts && !by_first) continue;
+      if (rejections[x] != 0 && !by_first) continue;
+      const bool seen_by_both = seen_by_first != nullptr && disparity_px <= seen_by_first[x];
+      rejections[x] =
+          codeOf(seen_by_both && contradicts != by_first ? Rejection::kPairs : Rejection::kLeftRight);
     }
   }
 }
@@ -124,7 +134,7 @@ void Validator::checkOwnCosts(const ValidationInput& input, double largest_share
                               cv::Mat1b& rejection) {
   const int window_px = input.sweep.window_px;
   box_sums_.compute(input.winners.own_cost, window_px, own_costs_);
-  const double largest = largest_share * kChanceCost * window_px * window_px;
+  const int largest = static_cast<int>(largest_share * kChanceCost * window_px * window_px);
   workers.share(rejection.rows, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const short* costs = own_costs_[y];

@@ -75,6 +75,17 @@ TEST(StereoMatcher, SurfaceHiddenFromOneCameraIsRefusedOrRight) {
   EXPECT_GT(answered, 0.85 * kSize.area());
   EXPECT_LT(wrong, 0.01 * kSize.area());
   EXPECT_NEAR(disparity.disparity_px(60, 80), 13, 0.3);
+  // The right camera sees the box where the top one still sees what is behind.
+  const cv::Rect hidden(51, 44, 8, 32);
+  const auto countOf = [&](const Disparity& of, Rejection why) {
+    return cv::countNonZero(of.rejection(hidden) == static_cast<int>(why));
+  };
+  EXPECT_GT(countOf(disparity, Rejection::kPairs), 0.5 * hidden.area());
+  EXPECT_LT(countOf(disparity, Rejection::kLeftRight), 0.1 * hidden.area());
+  images.top.release();
+  const Disparity of_pair = matched(images);
+  EXPECT_EQ(shareOf(of_pair, Rejection::kPairs), 0);
+  EXPECT_GT(countOf(of_pair, Rejection::kLeftRight), 0.3 * hidden.area());
 }
 
 // A textured thing before a wall that shows nothing: only its outline, which the windows reach beyond.

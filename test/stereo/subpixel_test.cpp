@@ -65,8 +65,7 @@ TEST(Subpixel, SlantedSurfaceKeepsItsSlope) {
 TEST(Subpixel, SlantedSurfaceIsNotDrawnToWholePixels) {
   const Surface surface{2, 0.115};  // a corridor's wall
   cv::RNG random(11);
-  const Disparity disparity =
-      matched(viewsOf(Texture({160, 120}, 1.5, 20, random), surface, {0, 1}, random));
+  const Disparity disparity = matched(viewsOf(Texture({160, 120}, 1.5, 20, random), surface, {0, 1}, random));
   std::array<double, 8> sums{}, counts{};
   for (int y = 8; y < 112; ++y) {
     for (int x = 24; x < 152; ++x) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
+#include <tuple>
 #include <vector>
 
 namespace cornerstone {
@@ -132,24 +134,71 @@ TEST_P(Kernels, ChooseTheLowestSumAndTellItsMarginAndLead) {
   }
 }
 
+// The same number by number; rows of less than a vector and of parts of one.
+TEST_P(Kernels, JudgeWinners) {
+  for (const int width : {1, 7, 8, 15, 16, 17, 60}) {
+    cv::RNG random(static_cast<std::uint64_t>(width));
+    cv::Mat1s values(5, width);
+    cv::Mat1b of_paths(2, width);
+    random.fill(values, cv::RNG::UNIFORM, 0, 4000);
+    random.fill(values.row(0), cv::RNG::UNIFORM, 1, 36);
+    random.fill(of_paths, cv::RNG::UNIFORM, 0, 256);
+    random.fill(of_paths.row(0).colRange(0, (width + 1) / 2), cv::RNG::UNIFORM, 0, 40);
+    values(1, width / 3) = 32767;
+    WinnerRow row;
+    row.disparities_px = values[0];
+    row.costs = values[1];
+    row.before = values[2];
+    row.after = values[3];
+    row.chance = values[4];
+    row.margins = of_paths[0];
+    row.leads = of_paths[1];
+    row.width = width;
+    row.last_px = 32;
+    row.smallest_margin = 18;
+    row.least_cost = 245;
+    row.no_cost = 32767;
+    row.flat_gain = 0.4F;
+    row.strong_product = 5.5F;
+    std::tie(row.none, row.outside, row.texture, row.uniqueness, row.range) = std::tuple(0, 1, 2, 3, 6);
+    std::tie(row.weak, row.strong, row.flat) = std::tuple(10, 11, 12);
+    std::vector<std::uint8_t> verdicts(static_cast<std::size_t>(width) + 1, 99), evidence = verdicts;
+    GetParam()->judge(row, verdicts.data(), evidence.data());
+    EXPECT_EQ(verdicts.back(), 99);
+    EXPECT_EQ(evidence.back(), 99);
+    for (int x = 0; x < width; ++x) {
+      const int d = values(0, x), cost = values(1, x), chance = values(4, x), margin = of_paths(0, x);
+      const bool outward = (d <= 1 && values(2, x) < cost) || (d >= 32 && values(3, x) < cost) || d > 32;
+      const bool flat = static_cast<float>(std::max(chance - cost, 0)) <= 0.4F * static_cast<float>(chance);
+      const bool strong = static_cast<float>(margin * of_paths(1, x)) > 5.5F * static_cast<float>(cost + 245);
+      const int verdict = cost == 32767 ? 1 : margin < 18 ? (flat ? 2 : 3) : outward ? 6 : 0;
+      ASSERT_EQ(verdicts[static_cast<std::size_t>(x)], verdict) << width << ' ' << x;
+      ASSERT_EQ(evidence[static_cast<std::size_t>(x)], strong ? 11 : flat ? 12 : 10) << width << ' ' << x;
+    }
+  }
+}
+
 // Nine fits, half a window apart, around a plane; those of another surface do not count, and where a
 // neighbour is on another surface the plane is level.
 TEST_P(Kernels, TellTheSpreadAroundAPlane) {
   constexpr int kReach = 2, kCols = 64, kFirst = 2 * kCols + 2;
-  cv::Mat1f fits(5, kCols), means(5, kCols), squares(1, kCols);
+  cv::Mat1f fits(5, kCols), means(5, kCols), sigmas(1, kCols), weights(1, kCols, 2.F);
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < kCols; ++x) means(y, x) = fits(y, x) = 10 + 0.3F * static_cast<float>(x - 2 * y);
   const auto squareAt = [&](int x) {
-    SpreadRow row;
+    SigmaRow row;
     row.fits = fits[0] + kFirst;
     row.means = means[0] + kFirst;
     row.step = kCols;
     row.reach = kReach;
     row.width = kWidth;
     row.largest_step = 1;
-    row.squares = squares[0];
-    GetParam()->spread(row);
-    return squares(0, x - 2);
+    row.weights = weights[0];
+    row.noise_variance = 0.02F;  // of weight 2: 0.01
+    row.model_variance = 0.04F;
+    row.sigmas = sigmas[0];
+    GetParam()->sigma(row);
+    return std::pow(sigmas(0, x - 2), 2) - 0.05;
   };
   EXPECT_NEAR(squareAt(9), 0, 1e-6);
   fits(0, 7) += 0.6F;

@@ -13,14 +13,15 @@
 #include <vector>
 
 #include "cornerstone/stereo/cost_sweep.h"
+#include "cornerstone/stereo/disparity.h"
 #include "cornerstone/stereo/winner_steps.h"
 
 namespace cornerstone {
 
 class OutlineCheck {
  public:
-  // Turns kNone into kUniqueness in `rejection`.
-  void check(const Winners& winners, const SweepInput& input, Workers& workers, cv::Mat1b& rejection);
+  // Turns answers into kUniqueness.
+  void check(const Winners& winners, const SweepInput& input, Workers& workers, Disparity& disparity);
 
  private:
   struct Found {  // by one worker

@@ -45,7 +45,7 @@ class SubpixelRefiner {
   };
   void fitEach(const SubpixelInput& input, const cv::Range& rows);
   void averageRow(int y, std::ptrdiff_t step, const Planes& from, Planes& to) const;
-  void spreadRow(int y, int reach_px);
+  void sigmaRow(int y, int reach_px);
   void writeRow(int y, const std::uint8_t* rejections, float* disparities_px, float* sigmas_px) const;
 
   int radius_px_ = 0;  // of the support

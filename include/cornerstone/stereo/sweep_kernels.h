@@ -79,13 +79,28 @@ struct FitRow {
   float *fits_px = nullptr, *weights = nullptr;
 };
 
-// Mean squares of the distances of fits from the plane through the means around, see SubpixelRefiner.
-struct SpreadRow {
+// Standard deviations of means of fits, see SubpixelRefiner. The spread is that of the fits around the plane
+// through the means.
+struct SigmaRow {
   const float *fits = nullptr, *means = nullptr;  // of the row, and `reach` pixels around
+  const float* weights = nullptr;                 // of the means
   std::ptrdiff_t step = 0;                        // from a row to the next
   int reach = 0, width = 0;
-  float largest_step = 0;  // fits farther from the plane are those of another surface
-  float* squares = nullptr;
+  float largest_step = 0;    // fits farther from the plane are those of another surface
+  float noise_variance = 0;  // of a mean, times its weight
+  float model_variance = 0;  // added to that of the noise and of the spread
+  float* sigmas = nullptr;
+};
+
+// What the costs of a row of winners say, see Validator: a verdict and a class of evidence for each.
+struct WinnerRow {
+  const short *disparities_px = nullptr, *costs = nullptr, *before = nullptr, *after = nullptr,
+              *chance = nullptr;
+  const std::uint8_t *margins = nullptr, *leads = nullptr;
+  int width = 0, last_px = 0, smallest_margin = 0, least_cost = 0, no_cost = 0;
+  float flat_gain = 0, strong_product = 0;
+  std::uint8_t none = 0, outside = 0, texture = 0, uniqueness = 0, range = 0;  // verdicts
+  std::uint8_t weak = 0, flat = 0, strong = 0;                                 // evidence
 };
 
 // Features of a row: see GradientFeatures. Whole vectors are read and written beyond the end.
@@ -108,7 +123,8 @@ struct SweepKernels {
   void (*pathDown)(const PathRow& row);
   void (*fit)(const FitRow& row);
   void (*average)(const AverageRow& row);
-  void (*spread)(const SpreadRow& row);
+  void (*sigma)(const SigmaRow& row);
+  void (*judge)(const WinnerRow& row, std::uint8_t* verdicts, std::uint8_t* evidence);
   void (*squash)(const SquashRow& row, std::uint8_t* features);
   // Weights 1 2 1 along and across, over 16; rows[1] is the middle one. Reads one pixel before the row.
   void (*smooth)(const std::uint8_t* const* rows, int width, std::uint8_t* out);

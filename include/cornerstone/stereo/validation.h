@@ -30,8 +30,8 @@ enum class Evidence : std::uint8_t { kWeak = 0, kStrong = 1, kFlat = 2 };
 
 class Validator {
  public:
-  // Sets `rejection` to kNone, kOutside, kTexture, kUniqueness, kLeftRight or kRange for every pixel of the
-  // image.
+  // Sets `rejection` to kNone, kOutside, kTexture, kUniqueness, kLeftRight, kRange or kPairs for every pixel
+  // of the image.
   void check(const ValidationInput& input, const ValidationParams& params, Workers& workers,
              cv::Mat1b& rejection);
 
@@ -43,8 +43,9 @@ class Validator {
                     cv::Mat1b& rejection);
   void countSteps(const SecondaryView& view, int width);
   // Two reference pixels that a secondary camera would see at one place: only the better matching one can be
-  // right. Within an area that holds whole lines along the view's shift.
-  void checkSecondary(const Winners& winners, const SecondaryView& view, const cv::Rect& area,
+  // right. The second view comes after the first: where both see a pixel, it tells kLeftRight from kPairs.
+  // Within an area that holds whole lines along the view's shift.
+  void checkSecondary(const ValidationInput& input, std::size_t view, const cv::Rect& area,
                       cv::Mat1b& rejection);
 
   // A pixel beside a textured surface takes its disparity from the wide windows though nothing matches around
