@@ -61,25 +61,29 @@ void fit(const FitRow& row) {
   fitVector(row, row.width - kFloats);
 }
 
-// Neighbours count in pairs of one weight, that of the mean of the two: on a slanted surface the mean would
-// else be drawn to the side with the better fits, and those lie where the truth is near a whole pixel.
+// Neighbours on opposite sides count alike, with the weight of the mean of the two: on a slanted surface the
+// mean would else be drawn to the side with the better fits, and those lie where the truth is near a whole
+// pixel. At a surface's edge the neighbours that there are count alone.
 void average(const AverageRow& row) {
   using Floats = cv::v_float32;
   const Floats largest_step = cv::vx_setall_f32(row.largest_step), least = cv::vx_setall_f32(1e-12F),
-               twice = cv::vx_setall_f32(2);
+               twice = cv::vx_setall_f32(2), none = cv::vx_setzero_f32();
   for (int x = 0; x < row.width; x += Floats::nlanes) {
     const Floats middle = cv::vx_load(row.values + x);
-    Floats sum = cv::vx_setzero_f32(), weights = cv::vx_load(row.weights + x), all_weights = weights;
+    Floats sum = none, weights = cv::vx_load(row.weights + x), all_weights = weights;
     for (int i = 1; i <= row.radius; ++i) {
       const std::ptrdiff_t step = i * row.step;
       const Floats ahead = cv::vx_load(row.values + x + step) - middle;
       const Floats behind = cv::vx_load(row.values + x - step) - middle;
       const Floats one = cv::vx_load(row.weights + x + step) & (cv::v_abs(ahead) <= largest_step);
       const Floats other = cv::vx_load(row.weights + x - step) & (cv::v_abs(behind) <= largest_step);
-      const Floats weight = twice * one * other / cv::v_max(one + other, least);
-      sum += weight * (ahead + behind);
-      weights += twice * weight;
-      all_weights += one + other;
+      const Floats both = one + other, alike = twice * one * other / cv::v_max(both, least);
+      const Floats alone = alike <= none;
+      const Floats weight = cv::v_select(alone, one, alike),
+                   weight_behind = cv::v_select(alone, other, alike);
+      sum += weight * ahead + weight_behind * behind;
+      weights += weight + weight_behind;
+      all_weights += both;
     }
     cv::v_store(row.means + x, middle + sum / cv::v_max(weights, least));
     cv::v_store(row.weight_sums + x, all_weights);
