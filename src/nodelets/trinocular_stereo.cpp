@@ -5,6 +5,7 @@
 #include <sensor_msgs/image_encodings.h>
 #include <algorithm>
 #include <pluginlib/class_list_macros.hpp>
+#include <utility>
 
 #include "cornerstone/base/errors.h"
 #include "cornerstone/ros/image_messages.h"
@@ -68,7 +69,8 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   void reconfigure(StereoConfig& config) {
     try {
       const StereoParams changed = changedBy(config, params_.stereo);
-      matcher_.emplace(changed);
+      StereoMatcher matcher(changed);  // before the present one is given up
+      matcher_ = std::move(matcher);
       rig_check_.emplace(changed);
       params_.stereo = changed;
       config_ = config;
