@@ -13,6 +13,7 @@ namespace cornerstone::bench {
 void stereoPart();
 void mappingPart();
 void mappingSizePart();
+void toursPart(int seeds);
 void registrationPart();
 void registrationLimitsPart();
 void registrationCostPart();
