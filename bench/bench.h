@@ -14,6 +14,7 @@ void stereoPart();
 void mappingPart();
 void mappingSizePart();
 void toursPart(int seeds);
+void scanFitPart();
 void registrationPart();
 void registrationLimitsPart();
 void registrationCostPart();

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   try {
     if (tours > 0) {
       cornerstone::bench::toursPart(tours);
+      cornerstone::bench::scanFitPart();
       return 0;
     }
     cornerstone::bench::stereoPart();
