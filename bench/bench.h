@@ -13,6 +13,8 @@ namespace cornerstone::bench {
 void stereoPart();
 void mappingPart();
 void mappingSizePart();
+void toursPart(int seeds);
+void scanFitPart();
 void registrationPart();
 void registrationLimitsPart();
 void registrationCostPart();

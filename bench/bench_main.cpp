@@ -1,5 +1,6 @@
 // All parts, as Markdown on standard output; scripts/bench.sh makes bench/RESULTS.md of it.
 // usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]
+//        cornerstone_bench --tours N    the long tours alone, N seeds a world
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -18,15 +19,28 @@ int main(int argc, char** argv) {
     seeds = std::atoi(words[1].c_str());
     words.erase(words.begin(), words.begin() + 2);
   }
+  int tours = 0;
+  if (words.size() == 2 && words[0] == "--tours") {
+    tours = std::atoi(words[1].c_str());
+    words.erase(words.begin(), words.begin() + (tours > 0 ? 2 : 0));
+  }
   const auto is_sets = std::find(words.begin(), words.end(), "--stereo-sets");
   if (is_sets != words.end()) folders.assign(is_sets + 1, words.end());
   words.erase(is_sets, words.end());
   const bool stereo_only = words == std::vector<std::string>{"--stereo-only"};
   if (!words.empty() && !stereo_only) {
-    std::fputs("usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]\n", stderr);
+    std::fputs(
+        "usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]\n"
+        "       cornerstone_bench --tours N\n",
+        stderr);
     return 2;
   }
   try {
+    if (tours > 0) {
+      cornerstone::bench::toursPart(tours);
+      cornerstone::bench::scanFitPart();
+      return 0;
+    }
     cornerstone::bench::stereoPart();
     if (!folders.empty()) cornerstone::bench::stereoSetsPart(folders);
     if (stereo_only) return 0;

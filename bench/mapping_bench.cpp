@@ -14,11 +14,7 @@ class Comparison {
       : mounting_(mountingOf(rigOf(width_px))),
         matcher_(stereoParams(width_px)),
         at_truth_(truthParams()),
-        bm_(makeStereoBM(maxDisparityOf(width_px))),
-        mrpt_(0, 1, 0, 1, static_cast<float>(GridParams{}.resolution_m)) {
-    mrpt_.insertionOptions.considerInvalidRangesAsFreeSpace = false;
-    mrpt_.insertionOptions.maxDistanceInsertion = static_cast<float>(GridParams{}.max_range_m);
-  }
+        bm_(makeStereoBM(maxDisparityOf(width_px))) {}
 
   void look(const RobotFrame& frame) {
     if (poses_.empty()) world_from_odom_ = frame.world_from_base * frame.odom_from_base.inverse();
@@ -37,7 +33,7 @@ class Comparison {
         elapsed_ms([&] { answer = matchOpenCV(*bm_, images.reference, images.right); }));
     const CameraView view{mounting_.rig, mounting_.base_from_camera};
     peer_mapping_ms_.push_back(
-        elapsed_ms([&] { insertNearestPixels(answer, view, frame.world_from_base, mrpt_); }));
+        elapsed_ms([&] { insertRanges(nearestRanges(answer, view), view, frame.world_from_base, mrpt_); }));
     peer_ms_.push_back(peer_stereo_ms_.back() + peer_mapping_ms_.back());
   }
 
@@ -77,7 +73,7 @@ class Comparison {
   StereoMatcher matcher_;
   Mapper driven_{MapperParams{}}, at_truth_;
   cv::Ptr<cv::StereoMatcher> bm_;
-  mrpt::maps::COccupancyGridMap2D mrpt_;
+  mrpt::maps::COccupancyGridMap2D mrpt_ = emptyMrptMap();
   Disparity disparity_;
   Pose2 world_from_odom_;
   std::vector<Pose2> poses_;

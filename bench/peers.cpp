@@ -60,9 +60,8 @@ std::vector<double> nearestRanges(const cv::Mat1f& disparity_px, const CameraVie
   return ranges_m;
 }
 
-void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, const Pose2& map_from_base,
-                         mrpt::maps::COccupancyGridMap2D& map) {
-  const std::vector<double> ranges_m = nearestRanges(disparity_px, view);
+void insertRanges(const std::vector<double>& ranges_m, const CameraView& view, const Pose2& map_from_base,
+                  mrpt::maps::COccupancyGridMap2D& map) {
   const double half_rad = std::atan(view.rig.centre_x_px / view.rig.focal_px);
   mrpt::obs::CObservation2DRangeScan scan;
   scan.aperture = static_cast<float>(2 * half_rad);
@@ -81,6 +80,14 @@ void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, 
   }
   map.insertObservation(
       scan, mrpt::poses::CPose3D(map_from_base.x_m, map_from_base.y_m, 0, map_from_base.yaw_rad, 0, 0));
+}
+
+mrpt::maps::COccupancyGridMap2D emptyMrptMap() {
+  const GridParams ours;
+  mrpt::maps::COccupancyGridMap2D map(0, 1, 0, 1, static_cast<float>(ours.resolution_m));
+  map.insertionOptions.considerInvalidRangesAsFreeSpace = false;
+  map.insertionOptions.maxDistanceInsertion = static_cast<float>(ours.max_range_m);
+  return map;
 }
 
 GridMap fromMrpt(const mrpt::maps::COccupancyGridMap2D& map) {

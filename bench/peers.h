@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "cornerstone/mapping/grid_map.h"
+#include "cornerstone/mapping/occupancy_grid.h"
 #include "cornerstone/scan/column_scan.h"
 #include "cornerstone/stereo/trinocular_rig.h"
 
@@ -30,9 +30,12 @@ struct CameraView {
 // Planar range of each column's nearest pixel whose height lies within the band; 0: none. The rule of
 // depthimage_to_laserscan.
 std::vector<double> nearestRanges(const cv::Mat1f& disparity_px, const CameraView& view);
-// The same as ranges in even steps of bearing, inserted at the pose.
-void insertNearestPixels(const cv::Mat1f& disparity_px, const CameraView& view, const Pose2& map_from_base,
-                         mrpt::maps::COccupancyGridMap2D& map);
+// Ranges of the columns, in even steps of bearing, inserted at the pose.
+void insertRanges(const std::vector<double>& ranges_m, const CameraView& view, const Pose2& map_from_base,
+                  mrpt::maps::COccupancyGridMap2D& map);
+// MRPT's default insertion but for considerInvalidRangesAsFreeSpace (off: it would erase bare walls) and the
+// range, which is cornerstone's.
+mrpt::maps::COccupancyGridMap2D emptyMrptMap();
 
 GridMap fromMrpt(const mrpt::maps::COccupancyGridMap2D& map);
 mrpt::maps::COccupancyGridMap2D toMrpt(const GridMap& map);

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kSpeed_m_s = 2, kTurnRate_rad_s = 1.5;
 constexpr int kStepsPerFrame = 5;  // of 50 a second: 10 Hz
-const CameraFaultParams kFaults{2.0, 0.05, 0.1, 0};
 
 using Route = std::vector<Eigen::Vector2d>;
 
@@ -55,9 +54,7 @@ const std::map<std::string, Route>& routes() {
   return kRoutes;
 }
 
-}  // namespace
-World tourWorldForTest(const std::string& name);
-World tourWorldForTest(const std::string& name) {
+World tourWorld(const std::string& name) {
   World world = shippedWorld(name + ".yaml");
   ScenarioRobot& robot = world.robots.front();
   robot.speed_m_s = kSpeed_m_s;
@@ -71,7 +68,6 @@ World tourWorldForTest(const std::string& name) {
   return world;
 }
 
-namespace {
 class DriftingOdometry {
  public:
   explicit DriftingOdometry(int seed) : random_(static_cast<unsigned>(seed)) {
@@ -110,13 +106,13 @@ const std::vector<std::string>& tourWorlds() {
 
 RecordedTour recordTour(const TourSetup& setup) {
   RecordedTour tour;
-  tour.world = tourWorldForTest(setup.world);
+  tour.world = tourWorld(setup.world);
   SimulationParams params;
   params.seed = setup.seed;
   params.robots = {tour.world.robots.front().name};
   params.steps_per_frame = kStepsPerFrame;
   params.rig = rigOf(setup.width_px);
-  params.cameras = kFaults;
+  params.cameras = setup.faults;
   const StereoMounting mounting = mountingOf(params.rig);
   tour.camera = {mounting.rig, mounting.base_from_camera};
   StereoParams stereo;
@@ -133,7 +129,9 @@ RecordedTour recordTour(const TourSetup& setup) {
           matcher.match({frame.images[0], frame.images[1], frame.images[2]}, mounting.rig);
       look.scan = scanFromDisparity(disparity, mounting.base_from_camera, {});
     });
-    look.peer_ranges_m = nearestRanges(matchOpenCV(*peer, frame.images[0], frame.images[1]), tour.camera);
+    look.peer_chain_ms = elapsed_ms([&] {
+      look.peer_ranges_m = nearestRanges(matchOpenCV(*peer, frame.images[0], frame.images[1]), tour.camera);
+    });
     if (!tour.looks.empty())
       tour.way_m +=
           (tour.looks.back().world_from_base.translation() - look.world_from_base.translation()).norm();

@@ -2,14 +2,19 @@
 # Measures cornerstone beside its peers (OpenCV's stereo, MRPT's insertion and aligner) and rewrites bench/RESULTS.md.
 # One thread; some minutes. The build folder is left as it was, without the benchmark program.
 #
-# usage: scripts/bench.sh [--seeds N] [--stereo-sets FOLDER...]   N: runs a world of the robots that meet (1; 20 take
-# an hour or more); FOLDER: images of two or three cameras with true disparity, with
+# usage: scripts/bench.sh [--seeds N] [--tours N] [--stereo-sets FOLDER...]   seeds: runs a world of the robots that meet
+# (1; 20 take an hour or more); tours: seeds a world of the long tours (none; 5 take twenty minutes); FOLDER: images of two or three cameras with true disparity, with
 # reference.png, right.png, perhaps top.png, disparity.png (256 x px, 0 unknown) and visible.png (seen by all cameras)
 set -euo pipefail
 sets=()
 seeds=1
+tours=0
 if [ "${1:-}" = "--seeds" ] && [ $# -gt 1 ]; then
   seeds=$2
+  shift 2
+fi
+if [ "${1:-}" = "--tours" ] && [ $# -gt 1 ]; then
+  tours=$2
   shift 2
 fi
 if [ $# -gt 0 ]; then
@@ -51,7 +56,9 @@ head_lines() {
   echo "- Data: the package's simulator (\`worlds/*.yaml\`) and \`/usr/share/mrpt/datasets\` (package mrpt-common)"
 }
 head_lines >"$report"
-"$(find build/devel -type f -name cornerstone_bench | head -n 1)" --seeds "$seeds" "${sets[@]}" >>"$report"
+bench=$(find build/devel -type f -name cornerstone_bench | head -n 1)
+"$bench" --seeds "$seeds" "${sets[@]}" >>"$report"
+[ "$tours" -eq 0 ] || "$bench" --tours "$tours" >>"$report"
 cat bench/what_they_do_not_say.md >>"$report"
 cp "$report" bench/RESULTS.md
 cat bench/RESULTS.md

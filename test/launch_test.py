@@ -68,6 +68,13 @@ class Launch(unittest.TestCase):
             nodelets = nodelets_of(load(SOURCE / "launch/robot.launch", f"input:={kind}")).values()
             self.assertEqual("cornerstone/TrinocularStereo" in nodelets, wanted)
 
+    def test_lasers_get_their_own_values_over_those_of_a_camera(self):
+        for kind, range_m in (("disparity", 8), ("depth", 8), ("scan", 15)):
+            params = load(SOURCE / "launch/robot.launch", f"input:={kind}").params
+            self.assertEqual(params["/a/mapper/mapper/grid/max_range_m"].value, range_m)
+            self.assertEqual(params["/a/mapper/input"].value, kind)
+            self.assertEqual(params["/a/mapper/mapper/grid/resolution_m"].value, 0.05)  # what the overlay leaves alone
+
     def test_names_follow_the_robot(self):
         config = load(SOURCE / "launch/robot.launch", "robot:=left", "reference_robot:=right")
         self.assertEqual(config.params["/left/mapper/robot"].value, "left")

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cornerstone/base/errors.h"
 
@@ -22,6 +23,27 @@ struct Sums {
   int agreeing = 0;  // within three sigmas
 };
 
+// One of two looks at a wall, along its normal.
+struct LookAtWall {
+  double to_other_m;  // to where the other look sees the wall
+  double sigma_m;
+  double away_m;  // of the wall from the sensor
+};
+
+// Errors of stereo and what the calibration moves grow with the range's square. Taken at the range that each
+// look measured they would hang on its noise: a wall measured too near would weigh more and move less, so
+// that walls would seem nearer than they are, and the calibration wrong. Hence both are taken where the two
+// looks together see the wall: what each look's sigma and derivative have to be multiplied with.
+std::pair<double, double> ratesAtMean(const LookAtWall& earlier, const LookAtWall& later) {
+  const double e = earlier.sigma_m * earlier.sigma_m, l = later.sigma_m * later.sigma_m;
+  const auto rate = [](const LookAtWall& look, double share) {
+    constexpr double kLeast = 0.5, kMost = 2;  // of the range: beyond, it is not this wall
+    const double ratio = std::clamp(1 + share * look.to_other_m / look.away_m, kLeast, kMost);
+    return ratio * ratio;
+  };
+  return {rate(earlier, e / (e + l)), rate(later, l / (e + l))};
+}
+
 class Matching {
  public:
   Matching(const KeyFrame& earlier, const KeyFrame& later, const ScanCalibration& calibration,
@@ -35,6 +57,7 @@ class Matching {
   Sums sumAt(const Pose2& earlier_from_later, double gate_m) const {
     Sums sums;
     const Eigen::Matrix2d rotation = earlier_from_later.rotation();
+    const Eigen::Vector2d later_at_m = later_.base_from_sensor.translation();
     for (const WallPiece& piece : later_.pieces) {
       if (!piece.valid) continue;
       const Eigen::Vector2d arm_m = rotation * (piece.point_m + piece.by_calibration * calibration_);
@@ -44,18 +67,28 @@ class Matching {
       if (bearing_rad < earlier_.bearings_rad.front() || bearing_rad > earlier_.bearings_rad.back()) continue;
       ++sums.in_view;
       const WallPiece& wall = earlier_.pieces[nearestBeam(bearing_rad)];
-      if (!wall.valid || std::abs(wall.normal.dot(rotation * piece.normal)) < params_.min_normal_cosine)
-        continue;
-      const double residual_m = wall.normal.dot(point_m - wall.point_m - wall.by_calibration * calibration_);
+      const Eigen::Vector2d as_later = rotation * piece.normal;
+      const double cosine = wall.normal.dot(as_later);
+      if (!wall.valid || std::abs(cosine) < params_.min_normal_cosine) continue;
+      // Of both looks: the noise of one normal alone pretends to see motion along the wall.
+      const double e2 = wall.sigma_m * wall.sigma_m, l2 = piece.sigma_m * piece.sigma_m;
+      const Eigen::Vector2d normal = (l2 * wall.normal + std::copysign(e2, cosine) * as_later).normalized();
+      const Eigen::Vector2d wall_m = wall.point_m + wall.by_calibration * calibration_;
+      const double residual_m = normal.dot(point_m - wall_m);
       if (std::abs(residual_m) > gate_m) continue;
-      const double variance_m2 = wall.sigma_m * wall.sigma_m + piece.sigma_m * piece.sigma_m +
+      const auto [by_earlier, by_later] = ratesAtMean(
+          {residual_m, wall.sigma_m, normal.dot(wall_m - earlier_.base_from_sensor.translation())},
+          {-residual_m, piece.sigma_m, normal.dot(point_m - earlier_from_later * later_at_m)});
+      const double variance_m2 = std::pow(by_earlier * wall.sigma_m, 2) +
+                                 std::pow(by_later * piece.sigma_m, 2) +
                                  params_.wall_sigma_m * params_.wall_sigma_m;
       const double loss =
           1 + residual_m * residual_m / (variance_m2 * params_.loss_sigmas * params_.loss_sigmas);
       const double weight = 1 / (loss * variance_m2 * later_.correlated_beams);
       Vector5d row;
-      row << wall.normal, wall.normal.y() * arm_m.x() - wall.normal.x() * arm_m.y(),
-          (rotation * piece.by_calibration - wall.by_calibration).transpose() * wall.normal;
+      row << normal, normal.y() * arm_m.x() - normal.x() * arm_m.y(),
+          (by_later * rotation * piece.by_calibration - by_earlier * wall.by_calibration).transpose() *
+              normal;
       sums.squares += weight * row * row.transpose();
       sums.gradient += weight * residual_m * row;
       ++sums.met;

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <cmath>
+#include <numeric>
+#include <random>
+
 #include "support/room_scan.h"
 
 namespace cornerstone {
@@ -56,6 +61,46 @@ TEST(FrameMatch, KnowsHowTheMotionHangsOnTheCalibration) {
   ASSERT_TRUE(match);
   EXPECT_LT(lengthAt(*match, truth, needed), 0.5 * lengthAt(*match, truth, {}));
   EXPECT_LT(lengthAt(*match, truth, needed), 1);
+}
+
+// Noise that is even in the inverse range must not pass for a calibration: taken at the ranges as measured,
+// derivatives hang on the noise that they are multiplied with. Poses are known here; 300 matches together.
+TEST(FrameMatch, NoiseIsNoCalibration) {
+  test::Room room;
+  room.addRectangle(0, 0, 5, 4);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise_per_m(0, 0.012);  // 0.12 px over f B = 9.6 px m
+  const auto noisyFrame = [&](const Pose2& pose) {
+    RangeScan scan = test::scanOf(room, pose);
+    constexpr std::size_t kWindow = 9;  // of matching: neighbours share most of their error
+    std::vector<double> each_per_m(scan.beams.size() + kWindow);
+    for (double& value : each_per_m) value = noise_per_m(random) / std::sqrt(kWindow);
+    for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+      const auto first = each_per_m.begin() + static_cast<std::ptrdiff_t>(i);
+      const double error_per_m = std::accumulate(first, first + kWindow, 0.0);
+      Beam& beam = scan.beams[i];
+      if (!beam.hit) continue;
+      beam.range_m = 1 / (1 / beam.range_m + error_per_m);
+      beam.sigma_m = 0.012 * beam.range_m * beam.range_m;
+    }
+    return makeKeyFrame(scan, pose, pose, {});
+  };
+  const Pose2 before{1.2, 2.2, 0.3}, after{1.6, 2.3, 0.3};
+  const Pose2 truth = before.inverse() * after;
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 300; ++i) {
+    const auto match = matchFrames(noisyFrame(before), noisyFrame(after), {truth, {}}, {});
+    if (!match) continue;
+    const Pose2& at = match->earlier_from_later;
+    const Eigen::Vector3d off(truth.x_m - at.x_m, truth.y_m - at.y_m, wrapAngle(truth.yaw_rad - at.yaw_rad));
+    const Vector5d residual = match->sqrt_information.leftCols<3>() * off + match->offset;
+    const auto by_calibration = match->sqrt_information.rightCols<2>();
+    squares += by_calibration.transpose() * by_calibration;
+    gradient += by_calibration.transpose() * residual;
+  }
+  const Eigen::Vector2d calibration = -squares.inverse() * gradient;
+  EXPECT_LT(std::abs(calibration.x()), 0.010) << "1/m";  // taken as measured: 0.015
 }
 
 // A laser sees to 90 degrees on both sides, where a camera's calibration has no meaning.

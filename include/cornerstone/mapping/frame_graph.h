@@ -19,17 +19,20 @@ struct FrameGraphParams {
   bool use = true;                          // false: no frames are kept, and the map is never drawn anew
   double frame_distance_m = 0.25;           // of the way, or
   double frame_turn_rad = 10 * M_PI / 180;  // of a turn, between key frames
-  double match_distance_m = 3;              // frames farther apart hardly see the same piece of wall alike
+  // Frames farther apart hardly see the same piece of wall alike: the range to which pieces are looked for.
+  double match_distance_m = 6;
   double match_turn_rad = 70 * M_PI / 180;  // of a camera with 90 degrees of view
   int match_tries = 24;                     // earlier frames, spread over those nearby
-  double match_weight = 0.1;                // a frame meets some ten others with the same errors
+  double match_weight = 0.6;                // a frame meets some ten others, whose errors are partly the same
   double place_weight = 0.3;    // of the same when the newest frame alone is placed: its own error, once
   double loss_sigmas = 2;       // of a match as a whole
   double step_loss_sigmas = 3;  // of odometry: wheels slip
-  // Where wheels slip and nothing matches, the scans fitted to the map still tell the step, roughly: this fit
-  // is off the same way again and again.
-  double fitted_step_sigma_m = 0.02;
-  double fitted_step_sigma_rad = 0.5 * M_PI / 180;
+  // Where wheels slip and nothing matches, the scans fitted to the map still tell the step, roughly. Where
+  // they see nothing of it (along a corridor) it is odometry's own, with the drift as it was believed then:
+  // it must be far vaguer than odometry (3 mm a frame), or the graph holds on to its first guess of the
+  // drift.
+  double fitted_step_sigma_m = 0.1;
+  double fitted_step_sigma_rad = 3 * M_PI / 180;
   int solve_after_frames = 10;    // 2 m of way
   int redraw_looks_per_scan = 2;  // looks drawn anew with each scan, of those that came meanwhile
   double redraw_shift_m = 0.01;   // a map that is off by less is left as it is: a fifth of a cell
