@@ -20,7 +20,7 @@ struct FrameGraphParams {
   double frame_distance_m = 0.25;           // of the way, or
   double frame_turn_rad = 10 * M_PI / 180;  // of a turn, between key frames
   // Frames farther apart hardly see the same piece of wall alike: the range to which pieces are looked for.
-  double match_distance_m = 6;
+  double match_distance_m = 5;
   double match_turn_rad = 70 * M_PI / 180;  // of a camera with 90 degrees of view
   int match_tries = 24;                     // earlier frames, spread over those nearby
   double match_weight = 0.6;                // a frame meets some ten others, whose errors are partly the same
