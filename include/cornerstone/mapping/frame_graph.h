@@ -23,7 +23,7 @@ struct FrameGraphParams {
   double match_distance_m = 5;
   double match_turn_rad = 70 * M_PI / 180;  // of a camera with 90 degrees of view
   int match_tries = 24;                     // earlier frames, spread over those nearby
-  double match_weight = 0.6;                // a frame meets some ten others, whose errors are partly the same
+  double match_weight = 0.3;                // a frame meets some ten others, whose errors are partly the same
   double place_weight = 0.3;    // of the same when the newest frame alone is placed: its own error, once
   double loss_sigmas = 2;       // of a match as a whole
   double step_loss_sigmas = 3;  // of odometry: wheels slip

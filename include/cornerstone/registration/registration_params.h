@@ -39,7 +39,7 @@ struct RegistrationParams {
   // winner's, above which neither is believed: like offices in a row, or the two wings of a building, differ
   // in how much of them the maps share, and in nothing else. A few walls stand free of contradictions
   // anywhere.
-  double max_clear_rival = 0.35;
+  double max_clear_rival = 0.4;
   // Length of wall that must agree: walls of different buildings agree over 30 m by coincidence where one of
   // the maps is large. Of small maps this share is enough, but never less than a few rooms.
   double min_agreeing_m = 30.0;
