@@ -75,7 +75,9 @@ PoseEvidence weighPoses(const std::vector<JudgedPose>& poses, double square_m) {
     const PoseScore& rival = poses[i].elastic;
     const double share = valueOf(rival) / valueOf(best.elastic);
     evidence.second_best = std::max(evidence.second_best, share);
-    if (standsAlone(rival, best.elastic)) evidence.clear_rival = std::max(evidence.clear_rival, share);
+    if (!standsAlone(rival, best.elastic)) continue;
+    evidence.clear_rival = std::max(evidence.clear_rival, share);
+    evidence.clear_rival_m = std::max(evidence.clear_rival_m, rival.agree * square_m);
   }
   return evidence;
 }
@@ -103,6 +105,9 @@ std::optional<std::string> reasonToRefuse(const PoseEvidence& evidence, const Re
   if (evidence.clear_rival > params.max_clear_rival)
     return "a different pose is contradicted as little: " + text(evidence.clear_rival, 2) +
            " of the best one's value";
+  if (evidence.clear_rival_m >= needed_m)
+    return "a different pose would be believed if it were alone: " + text(evidence.clear_rival_m, 1) +
+           " m of wall agree, contradicted as little";
   if (evidence.spread < params.min_spread)
     return "the walls leave one direction open: it holds " + text(evidence.spread, 3) + " of the other one";
   if (probabilityRight(evidence) >= params.min_probability) return std::nullopt;

@@ -51,15 +51,29 @@ TEST(Decision, ManyContradictionsAreRefusedHoweverLargeTheLead) {
 }
 
 TEST(Decision, ARivalFreeOfContradictionsIsRefused) {
-  EXPECT_TRUE(isBelieved({posed(60, 1), posed(20, 0)}));
-  EXPECT_FALSE(isBelieved({posed(60, 1), posed(26, 0)}));
+  EXPECT_TRUE(isBelieved({posed(45, 1), posed(17, 0)}));
+  EXPECT_FALSE(isBelieved({posed(45, 1), posed(19, 0)}));
 }
 
 // Two wings of a building: the wrong one shares more of the maps, and both are contradicted somewhat.
 TEST(Decision, ARivalContradictedAsLittleIsRefused) {
   EXPECT_TRUE(isBelieved({posed(150, 13), posed(60, 12)}));
   EXPECT_FALSE(isBelieved({posed(150, 13), posed(60, 5)}));
-  EXPECT_TRUE(isBelieved({posed(150, 13), posed(40, 3)}));
+  EXPECT_TRUE(isBelieved({posed(150, 13), posed(19, 1)}));
+}
+
+// A building that is its own half turn, seen from its two ends: all of both maps agrees at the wrong pose,
+// what they share of the middle at the right one.
+TEST(Decision, ARivalThatWouldBeBelievedAloneIsRefused) {
+  PoseEvidence evidence = evidenceFor({posed(300, 3), posed(31, 1)});
+  evidence.smaller_map_m = 320;
+  EXPECT_TRUE(reasonToRefuse(evidence, {}));
+  evidence = evidenceFor({posed(300, 3), posed(28, 1)});
+  evidence.smaller_map_m = 320;
+  EXPECT_FALSE(reasonToRefuse(evidence, {}));
+  evidence = evidenceFor({posed(300, 3), posed(31, 4)});  // contradicted: it would not
+  evidence.smaller_map_m = 320;
+  EXPECT_FALSE(reasonToRefuse(evidence, {}));
 }
 
 TEST(Decision, TooLittleWallAnOpenDirectionOrNothingIsRefused) {

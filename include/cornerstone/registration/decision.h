@@ -30,6 +30,7 @@ struct PoseEvidence {
   double lead_sigmas = 0;    // of the rigid pose over the best different one, or over none at all
   double second_best = 0;    // value (agreeing less contradicting) of the best different pose over this one's
   double clear_rival = 0;    // the same of the best different pose that is contradicted as little
+  double clear_rival_m = 0;  // length of wall that agrees with such a pose, at most
   double spread = 0;         // weakest over strongest direction of the refinement's information
   bool with_prior = false;   // only poses near a prior were looked at
 };
