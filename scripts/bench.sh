@@ -3,8 +3,9 @@
 # One thread; some minutes. The build folder is left as it was, without the benchmark program.
 #
 # usage: scripts/bench.sh [--seeds N] [--tours N] [--stereo-sets FOLDER...]   seeds: runs a world of the robots that meet
-# (1; 20 take an hour or more); tours: seeds a world of the long tours (none; 5 take twenty minutes); FOLDER: images of two or three cameras with true disparity, with
-# reference.png, right.png, perhaps top.png, disparity.png (256 x px, 0 unknown) and visible.png (seen by all cameras)
+# (1; 20 take an hour or more); tours: seeds a world of the long tours (none; 5 take twenty minutes); FOLDER: images of two
+# or three cameras with true disparity, with reference.png, right.png, perhaps top.png, disparity.png (256 x px, 0 unknown)
+# and visible.png (seen by all cameras)
 set -euo pipefail
 sets=()
 seeds=1
@@ -18,7 +19,7 @@ if [ "${1:-}" = "--tours" ] && [ $# -gt 1 ]; then
   shift 2
 fi
 if [ $# -gt 0 ]; then
-  if [ "$1" != "--stereo-sets" ] || [ $# -lt 2 ]; then sed -n '5,7p' "$0" >&2; exit 2; fi
+  if [ "$1" != "--stereo-sets" ] || [ $# -lt 2 ]; then sed -n '5,8p' "$0" >&2; exit 2; fi
   for folder in "${@:2}"; do
     [ -f "$folder/disparity.png" ] || { echo "bench: $folder: no disparity.png" >&2; exit 2; }
     sets+=("$(realpath "$folder")")
