@@ -26,20 +26,25 @@ inline void fitVector(const FitRow& row, int x) {
   cv::v_store(row.weights + x, root_weight * root_weight & answered);
 }
 
-// A row of less than a vector, in a row of one.
-void fitNarrow(const FitRow& row) {
-  constexpr int kFloats = cv::v_float32::nlanes;
-  short whole_px[kFloats] = {}, before[kFloats] = {}, cost[kFloats] = {}, after[kFloats] = {};
-  std::uint8_t rejections[kLanes] = {};
-  float fits_px[kFloats], weights[kFloats];
-  FitRow wide = row;
-  for (int x = 0; x < row.width; ++x) {
-    whole_px[x] = row.whole_px[x];
-    before[x] = row.before[x];
-    cost[x] = row.cost[x];
-    after[x] = row.after[x];
-    rejections[x] = row.rejections[x];
+// What a row of less than a vector holds, and zeros up to a whole one.
+template <typename T>
+class Widened {
+ public:
+  Widened(const T* from, int width) {
+    for (int x = 0; x < width; ++x) values_[x] = from[x];
   }
+  operator const T*() const { return values_; }
+
+ private:
+  T values_[kLanes] = {};
+};
+
+void fitNarrow(const FitRow& row) {
+  const Widened<short> whole_px(row.whole_px, row.width), before(row.before, row.width),
+      cost(row.cost, row.width), after(row.after, row.width);
+  const Widened<std::uint8_t> rejections(row.rejections, row.width);
+  float fits_px[kLanes] = {}, weights[kLanes] = {};
+  FitRow wide = row;
   wide.whole_px = whole_px;
   wide.before = before;
   wide.cost = cost;
@@ -168,20 +173,11 @@ inline void judgeVector(const WinnerRow& row, int x, std::uint8_t* verdicts, std
   cv::v_pack_u_store(evidence + x, cv::v_select(strong, shortsOf(row.strong), not_strong));
 }
 
-// A row of less than a vector, in a row of one.
 void judgeNarrow(const WinnerRow& row, std::uint8_t* verdicts, std::uint8_t* evidence) {
-  short disparities_px[kHalf] = {}, costs[kHalf] = {}, before[kHalf] = {}, after[kHalf] = {},
-        chance[kHalf] = {};
-  std::uint8_t margins[kHalf] = {}, leads[kHalf] = {}, wide_verdicts[kHalf], wide_evidence[kHalf];
-  for (int x = 0; x < row.width; ++x) {
-    disparities_px[x] = row.disparities_px[x];
-    costs[x] = row.costs[x];
-    before[x] = row.before[x];
-    after[x] = row.after[x];
-    chance[x] = row.chance[x];
-    margins[x] = row.margins[x];
-    leads[x] = row.leads[x];
-  }
+  const Widened<short> disparities_px(row.disparities_px, row.width), costs(row.costs, row.width),
+      before(row.before, row.width), after(row.after, row.width), chance(row.chance, row.width);
+  const Widened<std::uint8_t> margins(row.margins, row.width), leads(row.leads, row.width);
+  std::uint8_t wide_verdicts[kLanes] = {}, wide_evidence[kLanes] = {};
   WinnerRow wide = row;
   wide.disparities_px = disparities_px;
   wide.costs = costs;
