@@ -72,15 +72,19 @@ struct Climb {
     Hypothesis best = judge(start, look);
     Steps now = steps;
     for (int h = 0; h < steps.halvings; ++h) {
+      int back = -1;  // the way back to the centre before, which was worse
       for (int tries = 0; tries < kTries; ++tries) {
         const Hypothesis centre = best;
-        for (int axis = 0; axis < 3; ++axis) {
-          for (const double sign : {-1.0, 1.0}) {
-            const Hypothesis moved = judge(step(centre.reference_from_current, axis, sign, now), look);
-            if (moved.value > best.value) best = moved;
-          }
+        int taken = -1;
+        for (int way = 0; way < 6; ++way) {
+          if (way == back) continue;
+          const Hypothesis moved = judge(step(centre.reference_from_current, way, now), look);
+          if (moved.value <= best.value) continue;
+          best = moved;
+          taken = way;
         }
-        if (best.value <= centre.value) break;
+        if (taken < 0) break;
+        back = taken ^ 1;
       }
       now.distance_m /= 2;
       now.angle_rad /= 2;
@@ -88,7 +92,10 @@ struct Climb {
     return best;
   }
 
-  Pose2 step(const Pose2& pose, int axis, double sign, const Steps& now) const {
+  // way: along x, y and the yaw, of each first back, then forth.
+  Pose2 step(const Pose2& pose, int way, const Steps& now) const {
+    const int axis = way / 2;
+    const double sign = way % 2 == 0 ? -1 : 1;
     if (axis == 0) return {pose.x_m + sign * now.distance_m, pose.y_m, pose.yaw_rad};
     if (axis == 1) return {pose.x_m, pose.y_m + sign * now.distance_m, pose.yaw_rad};
     const double yaw = wrapAngle(pose.yaw_rad + sign * now.angle_rad);

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utility.hpp>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace cornerstone {
 namespace {
@@ -70,9 +73,48 @@ Spectra transform(const Turned& map, const Eigen::Vector2f& low, const Raster& r
   return spectra;
 }
 
+using Peak = std::pair<float, cv::Point>;
+bool isHigher(const Peak& a, const Peak& b) {
+  return std::make_tuple(-a.first, a.second.y, a.second.x) <
+         std::make_tuple(-b.first, b.second.y, b.second.x);
+}
+
+// The highest of all peaks that come along, row by row.
+class HighestPeaks {
+ public:
+  explicit HighestPeaks(std::size_t count) : count_(count) { peaks_.reserve(4 * count); }
+
+  // What is no higher cannot be among them.
+  float floor() const { return floor_; }
+  void add(const Peak& peak) {
+    peaks_.push_back(peak);
+    if (peaks_.size() < 4 * count_) return;
+    cut();
+    floor_ = peaks_.back().first;  // of like ones the first to come is kept
+  }
+  std::vector<cv::Point> best() {
+    cut();
+    std::vector<cv::Point> points;
+    for (const Peak& peak : peaks_) points.push_back(peak.second);
+    return points;
+  }
+
+ private:
+  void cut() {
+    const std::size_t count = std::min(count_, peaks_.size());
+    std::partial_sort(peaks_.begin(), peaks_.begin() + static_cast<std::ptrdiff_t>(count), peaks_.end(),
+                      isHigher);
+    peaks_.resize(count);
+  }
+
+  std::size_t count_;
+  float floor_ = 0;
+  std::vector<Peak> peaks_;
+};
+
 // The highest squares of a correlation, none beside a higher one.
 std::vector<cv::Point> highest(const cv::Mat1f& scores, std::size_t count) {
-  std::vector<std::pair<float, cv::Point>> peaks;
+  HighestPeaks peaks(count);
   const int size = scores.rows;
   for (int r = 0; r < size; ++r) {
     const float* row = scores[r];
@@ -80,20 +122,13 @@ std::vector<cv::Point> highest(const cv::Mat1f& scores, std::size_t count) {
     const float* below = scores[(r + size - 1) % size];
     for (int c = 0; c < size; ++c) {
       const float s = row[c];
-      const int left = (c + size - 1) % size, right = (c + 1) % size;
-      if (s <= 0 || s < row[left] || s <= row[right] || s < below[c] || s <= above[c]) continue;
-      peaks.emplace_back(s, cv::Point(c, r));
+      if (s <= peaks.floor()) continue;
+      const int left = c == 0 ? size - 1 : c - 1, right = c + 1 == size ? 0 : c + 1;
+      if (s < row[left] || s <= row[right] || s < below[c] || s <= above[c]) continue;
+      peaks.add({s, cv::Point(c, r)});
     }
   }
-  count = std::min(count, peaks.size());
-  const auto higher = [](const auto& a, const auto& b) {
-    return std::make_tuple(-a.first, a.second.y, a.second.x) <
-           std::make_tuple(-b.first, b.second.y, b.second.x);
-  };
-  std::partial_sort(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(count), peaks.end(), higher);
-  std::vector<cv::Point> points;
-  for (std::size_t i = 0; i < count; ++i) points.push_back(peaks[i].second);
-  return points;
+  return peaks.best();
 }
 
 // Both maps on grids of one size.
