@@ -17,6 +17,7 @@ void toursPart(int seeds);
 void scanFitPart();
 void registrationPart();
 void registrationLimitsPart();
+void registrationSelfSimilarPart();
 void registrationCostPart();
 void registrationMeetingPart(int seeds);
 

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     cornerstone::bench::mappingSizePart();
     cornerstone::bench::registrationPart();
     cornerstone::bench::registrationLimitsPart();
+    cornerstone::bench::registrationSelfSimilarPart();
     cornerstone::bench::registrationCostPart();
     cornerstone::bench::registrationMeetingPart(seeds);
   } catch (const std::exception& error) {
