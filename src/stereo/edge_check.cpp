@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kStep_px = 1;   // neighbours on one surface differ by no more
 constexpr int kAside_px = 3;  // a texture seen at a disparity that is off by so much no longer fits
-// Of pixels that are beyond doubt: any better. Half: hardly a change on photographs; nearly double: a fiftieth
-// more missed columns, thin things.
+// Of pixels that are beyond doubt: any better. Half: hardly a change on photographs; nearly double: a
+// fiftieth more missed columns, thin things.
 constexpr double kStrongCostRatio = 1;
 
 }  // namespace

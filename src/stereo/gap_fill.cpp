@@ -36,10 +36,10 @@ void forEachMarked(const std::uint8_t* marks, int count, const Action& action) {
 
 // The pixel's own images do not fit clearly worse there than where they fit best.
 bool GapFill::fits(const Images& images, cv::Point at, int disparity_px) {
-  const int own_px = images.winners.disparity_px(at);
+  const int own_px = images.input.winners.disparity_px(at);
   if (std::abs(own_px - disparity_px) <= kStep_px) return true;
-  return costAround(images.input, at, disparity_px) <=
-         costAround(images.input, at, own_px) + kNoiseCostAround;
+  return costAround(images.input.sweep, at, disparity_px) <=
+         costAround(images.input.sweep, at, own_px) + kNoiseCostAround;
 }
 
 void GapFill::propose(const Images& images, const Gap& gap) {
@@ -102,13 +102,13 @@ void GapFill::accept(int y, Disparity& disparity) const {
 
 // Rows are looked at by themselves and columns by themselves, and nothing is accepted before all have been:
 // the answers do not depend on who comes first.
-void GapFill::fill(const Winners& winners, const SweepInput& input, const GapParams& params, Workers& workers,
-                   Disparity& disparity) {
+void GapFill::fill(const GapInput& input, const GapParams& params, Disparity& disparity) {
   const cv::Size size = disparity.rejection.size();
   params_ = params;
   for (cv::Mat1f* plane : {&disparity_px_, &sigma_px_}) plane->create(size);
   gap_px_.create(size);
-  const Images images{winners, input, disparity};
+  const Images images{input, disparity};
+  Workers& workers = input.workers;
   workers.share(size.height, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) lookAlong(images, y);
   });

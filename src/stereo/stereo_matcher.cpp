@@ -128,7 +128,7 @@ void StereoMatcher::refine(Disparity& disparity) {
 
 void StereoMatcher::fillGaps(Disparity& disparity) {
   const GapParams params{kGapWindows * sweep_input_.window_px, static_cast<float>(params_.surface_step_px)};
-  gap_fill_.fill(*winners_, sweep_input_, params, *workers_, disparity);
+  gap_fill_.fill({*winners_, sweep_input_, *workers_}, params, disparity);
 }
 
 void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {

@@ -34,7 +34,7 @@ class GapFillTest : public testing::Test {
     for (int y = where.y; y < where.br().y; ++y)
       for (int x = where.x; x < where.br().x; ++x) reject(disparity_, {x, y}, why);
   }
-  void fill() { gap_fill_.fill(winners_, input_, kParams, workers_, disparity_); }
+  void fill() { gap_fill_.fill({winners_, input_, workers_}, kParams, disparity_); }
 
   Workers workers_{1};
   GradientFeatures reference_, right_;

@@ -16,12 +16,17 @@ struct GapParams {
   float largest_step_px = 1;  // between the two answers
 };
 
+struct GapInput {
+  const Winners& winners;
+  const SweepInput& sweep;
+  Workers& workers;
+};
+
 class GapFill {
  public:
   // Turns rejections into answers. Those that no camera sees or that fit best at the end of the search, where
   // something nearer may stand, stay.
-  void fill(const Winners& winners, const SweepInput& input, const GapParams& params, Workers& workers,
-            Disparity& disparity);
+  void fill(const GapInput& input, const GapParams& params, Disparity& disparity);
 
  private:
   struct Gap {
@@ -30,8 +35,7 @@ class GapFill {
     cv::Point after() const { return before + (length_px + 1) * step; }
   };
   struct Images {
-    const Winners& winners;
-    const SweepInput& input;
+    const GapInput& input;
     const Disparity& disparity;
   };
   void look(const Images& images, cv::Point after, cv::Point step);
