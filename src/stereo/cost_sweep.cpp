@@ -13,8 +13,10 @@ constexpr int kSlack = 64;  // kernels read and write whole vectors
 
 constexpr double kSearchScale = static_cast<double>(kSearchChance) / kChanceCost;  // of the mean pair cost
 // Penalties in the costs of the search, see kSearchChance. A slope of one disparity a pixel is rare on
-// walls, a depth step costs as much as one pixel without any match.
-constexpr int kSlopePenalty = 40, kJumpPenalty = 66;
+// walls, a depth step costs a third more than one pixel without any match. On photographs half of the first:
+// a quarter more phantom columns; steps of 120: a seventh more of these, a quarter more wrong answers; of 66:
+// a tenth more missed columns, a fifth fewer phantom ones.
+constexpr int kSlopePenalty = 40, kJumpPenalty = 80;
 // A depth step costs so much less for each grey level of a brightness step, down to a slope's penalty.
 constexpr int kPenaltyPerGrey = 3;
 

@@ -15,6 +15,10 @@ constexpr int kSmallestWindow_px = 3, kLargestWindow_px = 7;  // larger sums wou
 constexpr int kSmallestDerivedWindow_px = 5;                  // with 3, answers are twice as noisy
 constexpr int kWindowsAcross = 80;  // of the image's width; about a degree of a view of 90
 constexpr int kMostThreads = 64;
+// A gap may be as long as the windows of the pixels at its ends, so that all of it has been looked at from
+// one of them. On photographs half: an eightieth fewer answers, a twenty-fifth more missed columns; double:
+// as many more answers, a twentieth more of which are wrong.
+constexpr int kGapWindows = 2;
 
 // An odd number within the range, or 0: derived from the image's width.
 void requireOddOrNone(int value, const std::pair<int, int>& range, const std::string& name) {
@@ -79,6 +83,7 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   refine(disparity);
   dropSmallSurfaces(disparity);
   outline_check_.check(*winners_, sweep_input_, *workers_, disparity);
+  fillGaps(disparity);
 }
 
 int StereoMatcher::windowFor(int image_width_px) const {
@@ -119,6 +124,11 @@ void StereoMatcher::refine(Disparity& disparity) {
       for (int x = 0; x < disparity.rejection.cols; ++x)
         if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, {x, y}, Rejection::kTexture);
   });
+}
+
+void StereoMatcher::fillGaps(Disparity& disparity) {
+  const GapParams params{kGapWindows * sweep_input_.window_px, static_cast<float>(params_.surface_step_px)};
+  gap_fill_.fill({*winners_, sweep_input_, *workers_}, params, disparity);
 }
 
 void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {

@@ -43,7 +43,8 @@ void Validator::check(const ValidationInput& input, const ValidationParams& para
     });
   }
   checkOwnCosts(input, params.largest_own_share, workers, rejection);
-  edge_check_.check(input.winners, input.sweep, {params.smallest_edge_cost_ratio, workers}, rejection);
+  edge_check_.check(input.winners, input.sweep, {params.smallest_edge_cost_ratio, evidence_, workers},
+                    rejection);
 }
 
 void Validator::checkWinners(const ValidationInput& input, const ValidationParams& params,

@@ -118,7 +118,7 @@ TEST(StereoMatcher, BareWallIsRefused) {
     StereoImages images{photographed(wall, 2, 1, random), photographed(wall, 2, 1, random),
                         photographed(wall, 2, 1, random)};
     EXPECT_EQ(shareOf(matched(images), Rejection::kNone), 0) << "three cameras, seed " << seed;
-    EXPECT_GT(shareOf(matched(images), Rejection::kTexture), 0.5) << "three cameras, seed " << seed;
+    EXPECT_GT(shareOf(matched(images), Rejection::kTexture), 0.45) << "three cameras, seed " << seed;
     images.top.release();
     EXPECT_EQ(shareOf(matched(images), Rejection::kNone), 0) << "two cameras, seed " << seed;
   }

@@ -17,7 +17,8 @@ namespace cornerstone {
 class EdgeCheck {
  public:
   struct How {
-    double smallest_cost_ratio;  // what is less is not "clearly more"
+    double smallest_cost_ratio;  // what is less is not "clearly more"; pixels beyond doubt need less
+    const cv::Mat1b& evidence;   // Evidence
     Workers& workers;
   };
   // Turns kNone into kUniqueness in `rejection`.

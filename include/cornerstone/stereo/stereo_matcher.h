@@ -2,7 +2,7 @@
 // of a reference pixel is summed over the camera pairs before the best is chosen (Okutomi and Kanade, 1993).
 //
 // features (gradient_features.h) -> search (cost_sweep.h) -> checks (validation.h) -> sub-pixel and sigma
-// (subpixel.h) -> surfaces
+// (subpixel.h) -> surfaces, outlines -> gaps (gap_fill.h)
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@
 #include "cornerstone/base/workers.h"
 #include "cornerstone/stereo/cost_sweep.h"
 #include "cornerstone/stereo/disparity.h"
+#include "cornerstone/stereo/gap_fill.h"
 #include "cornerstone/stereo/outline_check.h"
 #include "cornerstone/stereo/subpixel.h"
 #include "cornerstone/stereo/surfaces.h"
@@ -40,10 +41,11 @@ struct StereoParams {
   // other, summed over all paths: patterns and most of bare walls fail here. Half: a twentieth more wrong
   // answers on photographs; double: a hundredth fewer answers there.
   double smallest_margin_share = 0.3;
-  // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px
-  // (else surfaces grow over their surroundings). 1: any better, a tenth more phantom columns; 2: a
-  // twentieth fewer answers, thin things first.
-  double smallest_edge_cost_ratio = 1.1;
+  // Beside a depth edge the other side's disparity must cost this many times the pixel's own in 3 x 3 px, or
+  // more than it for pixels beyond doubt (else surfaces grow over their surroundings). On photographs half: a
+  // third more phantom columns and wrong answers; double: a fortieth fewer answers, an eighth more missed
+  // columns.
+  double smallest_edge_cost_ratio = 1.4;
   // Mean cost of the window's pixels at the winner, of that of unrelated pixels. Lower: fewer answers through
   // noise.
   double largest_own_share = 0.8;
@@ -56,17 +58,17 @@ struct StereoParams {
   // Edge of the support that sub-pixel answers are averaged over, odd; it stops at depth edges. 0: that of
   // the window.
   int subpixel_support_px = 0;
-  // A surface with a smaller share of the image's pixels is dropped: 0.05% is 9 px of 160x120. A chair leg
-  // 2 px wide and 30 high is 60 px; what the margin leaves of chance matches is a few pixels, and
-  // smallest_strong_windows drops most of them.
-  double smallest_surface_share = 0.0005;
+  // A surface with a smaller share of the image's pixels is dropped: 0.025% is 77 px of 640x480. A chair leg
+  // 2 px wide and 30 high is 60 px of 160x120, where smallest_strong_windows asks for more than this. Half:
+  // no change on photographs; double: a hundredth more missed columns there.
+  double smallest_surface_share = 0.00025;
   // Answers that no bare wall or pattern gives: their margin, as above, times the lead of their window's cost
   // over that of any other disparity, in standard deviations of the cost. Half: blobs on a tenth of bare
   // walls, wrong disparities on patterns; double: a hundredth fewer answers.
   double strong_product = 3;
   // A surface with fewer such pixels is dropped, however large; in areas of the window, whose pixels err
-  // together.
-  double smallest_strong_windows = 2;
+  // together. Half: a fiftieth more wrong answers on photographs; double: a sixteenth more missed columns.
+  double smallest_strong_windows = 1;
   // Neighbours that differ by more are on different surfaces.
   double surface_step_px = 1.0;
   // Processors that one image set may keep busy; the answers are the same with any number. 1 leaves the
@@ -89,6 +91,7 @@ class StereoMatcher {
   int supportFor(int image_width_px) const;
   void sweep(const StereoImages& images, const TrinocularRig& rig);
   void refine(Disparity& disparity);
+  void fillGaps(Disparity& disparity);
   void dropSmallSurfaces(Disparity& disparity);
 
   StereoParams params_;
@@ -100,6 +103,7 @@ class StereoMatcher {
   Validator validator_;
   SubpixelRefiner refiner_;
   SurfaceFilter surfaces_;
+  GapFill gap_fill_;
   OutlineCheck outline_check_;
   cv::Mat1b verdicts_;
 };

@@ -12,7 +12,7 @@ constexpr int kFeatureChannels = 4;
 constexpr int kLargestFeature = 31;  // two cameras' differences over all channels fit a byte
 // The cost of pixels that have nothing to do with each other, as measured on natural images.
 constexpr int kChanceCost = 80;
-constexpr int kSearchChance = 60;  // the same in the costs of the search, whose path costs stay below 256
+constexpr int kSearchChance = 60;  // the same in the costs of the search; path costs end at 255
 
 // Where a secondary camera sees the pixels of one reference row: its feature c at disparity i + 1 of column x
 // is lines[c][x * step + i]; seen[x] disparities of column x lie within its image. Readable a vector beyond.

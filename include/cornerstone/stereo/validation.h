@@ -15,7 +15,7 @@ struct ValidationParams {
   double smallest_margin_share = 0.5;  // between best and second-best path sums, of kChanceCost
   // Margin (as above) times Winners::lead in the cost's noise (CostNoise).
   double strong_product = 3;
-  double smallest_edge_cost_ratio = 1.5;  // see EdgeCheck
+  double smallest_edge_cost_ratio = 1.4;  // see EdgeCheck
   double largest_own_share = 0.8;         // of kChanceCost: mean cost of the window's pixels at their winners
   int left_right_tolerance_px = 1;  // whole pixels between the answers of two reference pixels seen as one
 };
