@@ -21,6 +21,7 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.group("fit", [&] { describe(visitor, params.fit); });
   visitor.group("odometry", [&] { describe(visitor, params.odometry); });
   visitor.group("graph", [&] { describe(visitor, params.graph); });
+  visitor.group("relocalisation", [&] { describe(visitor, params.relocalisation); });
   visitor.field("fit_scans", params.fit_scans);
   visitor.field("max_contradictions", params.max_contradictions);
 }
@@ -36,6 +37,12 @@ void requireSane(const Pose2& odom_from_base) {
     throw InputError("odometry: odom_from_base lies too far from the frame's origin (5 km at most)");
 }
 
+bool same(const Pose2& a, const Pose2& b) {
+  constexpr double kSame_m = 0.15, kSame_rad = 3 * M_PI / 180;
+  const Pose2 apart = a.inverse() * b;
+  return apart.translation().norm() < kSame_m && std::abs(apart.yaw_rad) < kSame_rad;
+}
+
 }  // namespace
 
 Mapper::Mapper(const MapperParams& params, std::size_t levels)
@@ -44,6 +51,7 @@ Mapper::Mapper(const MapperParams& params, std::size_t levels)
       filter_(params.odometry),
       graph_(params.graph, params.odometry) {
   requireValid(params.fit);
+  requireValid(params.relocalisation);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
 
@@ -81,15 +89,17 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
   if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
-  if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
-  contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
+  if (!hasSlipped(scan, odom_from_base, fit)) {
+    if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
+    contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
+  }
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
   const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
   const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
-  if (remembers) remember(raw, odom_from_base);
+  if (remembers) remember(raw, whole_from_odom_ * odom_from_base);
   if (insert) {
     current().insert(scan, filter_.pose().map_from_base, motion());
     last_inserted_ = filter_.pose().map_from_base;
@@ -97,6 +107,36 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   if (remembers) straighten();
   map_from_odom_ = filter_.pose().map_from_base * odom_from_base.inverse();
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
+}
+
+// Where scan and odometry exclude each other the robot is sought nearby, and after some contradictions in a
+// row at every heading. There one look may mislead: two in a row have to be found at the same pose.
+bool Mapper::hasSlipped(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit) {
+  const RelocalisationParams& params = params_.relocalisation;
+  const std::optional<Pose2> before = found_map_from_odom_;
+  found_map_from_odom_.reset();
+  const bool contradicts = fit.state == FitState::kContradicts;
+  const bool doubtful = fit.state == FitState::kFitted && (fit.agreeing_share < params.doubtful_share ||
+                                                           fit.innovation_sigmas > params.slip_sigmas);
+  if (!contradicts && !doubtful) return false;
+  const Pose2 by_odometry = filter_.pose().map_from_base;
+  const auto seek = [&](double reach_m, double reach_rad) {
+    return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
+  };
+  std::optional<PoseEstimate> found = seek(params.slip_reach_m, params.slip_reach_rad);
+  if (!found && contradicts && contradictions_ >= params_.max_contradictions / 2) {
+    found = seek(params.reach_m, M_PI);
+    if (found) found_map_from_odom_ = found->map_from_base * odom_from_base.inverse();
+    if (!found || !before || !same(*before * odom_from_base, found->map_from_base)) return false;
+  }
+  if (!found) return false;
+  // What the graph takes for odometry goes on from where the robot is; the rates must not learn from a slip.
+  const Pose2 slip = by_odometry.inverse() * found->map_from_base;
+  whole_from_odom_ = whole_from_odom_ * odom_from_base * slip * odom_from_base.inverse();
+  filter_.place(*found);
+  contradictions_ = 0;
+  ++slips_;
+  return true;
 }
 
 void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
@@ -148,6 +188,9 @@ void Mapper::reset() {
   start_.reset();
   last_inserted_.reset();
   contradictions_ = 0;
+  found_map_from_odom_.reset();
+  whole_from_odom_ = {};
+  slips_ = 0;
   ++epoch_;
 }
 

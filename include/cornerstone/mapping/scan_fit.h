@@ -43,6 +43,7 @@ struct ScanFit {
   PoseEstimate pose;  // the prior unless fitted
   int matches = 0;
   double agreeing_share = 0;
+  double innovation_sigmas = 0;  // how far scan and prior lie apart, in their common sigmas
 };
 
 // What a scan is fitted to, and what is known before.
