@@ -89,14 +89,15 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
   if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
-  if (!hasSlipped(scan, odom_from_base, fit)) {
-    if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
-    contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
-  }
+  const Place place = seek(scan, odom_from_base, fit);
+  if (place == Place::kAsFitted && fit.state == FitState::kFitted) filter_.correct(fit.pose);
+  const bool contradicts = place != Place::kFound && fit.state == FitState::kContradicts;
+  contradictions_ = contradicts ? contradictions_ + 1 : 0;
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
-  const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
+  const bool trusted =
+      place != Place::kUnsure && (contradictions_ == 0 || contradictions_ > params_.max_contradictions);
   const bool insert = says_something && trusted;
   const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
   if (remembers) remember(raw, whole_from_odom_ * odom_from_base);
@@ -109,34 +110,44 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
 }
 
-// Where scan and odometry exclude each other the robot is sought nearby, and after some contradictions in a
-// row at every heading. There one look may mislead: two in a row have to be found at the same pose.
-bool Mapper::hasSlipped(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit) {
+bool Mapper::isDoubtful(const ScanFit& fit) const {
+  const RelocalisationParams& params = params_.relocalisation;
+  return fit.state == FitState::kContradicts || fit.innovation_sigmas > params.slip_sigmas ||
+         fit.knownAgreeingShare(params_.fit.min_matches) < params.doubtful_share;
+}
+
+// Where scan and odometry exclude each other the robot is sought nearby, then at every heading. There one
+// look may mislead: two in a row have to be found at the same pose.
+Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit) {
   const RelocalisationParams& params = params_.relocalisation;
   const std::optional<Pose2> before = found_map_from_odom_;
   found_map_from_odom_.reset();
-  const bool contradicts = fit.state == FitState::kContradicts;
-  const bool doubtful = fit.state == FitState::kFitted && (fit.agreeing_share < params.doubtful_share ||
-                                                           fit.innovation_sigmas > params.slip_sigmas);
-  if (!contradicts && !doubtful) return false;
+  doubts_ = isDoubtful(fit) ? doubts_ + 1 : 0;
+  if (doubts_ == 0) return Place::kAsFitted;
   const Pose2 by_odometry = filter_.pose().map_from_base;
-  const auto seek = [&](double reach_m, double reach_rad) {
-    return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
-  };
-  std::optional<PoseEstimate> found = seek(params.slip_reach_m, params.slip_reach_rad);
-  if (!found && contradicts && contradictions_ >= params_.max_contradictions / 2) {
-    found = seek(params.reach_m, M_PI);
-    if (found) found_map_from_odom_ = found->map_from_base * odom_from_base.inverse();
-    if (!found || !before || !same(*before * odom_from_base, found->map_from_base)) return false;
+  const auto found = relocalise(scan, grid(), {by_odometry, params.slip_reach_m, params.slip_reach_rad},
+                                params_.fit, params);
+  if (found) {
+    goOnAt(*found, odom_from_base);
+    return Place::kFound;
   }
-  if (!found) return false;
-  // What the graph takes for odometry goes on from where the robot is; the rates must not learn from a slip.
-  const Pose2 slip = by_odometry.inverse() * found->map_from_base;
+  if (doubts_ < 2) return Place::kAsFitted;
+  const auto far = relocalise(scan, grid(), {by_odometry, params.reach_m, M_PI}, params_.fit, params);
+  if (!far) return Place::kAsFitted;
+  found_map_from_odom_ = far->map_from_base * odom_from_base.inverse();
+  if (!before || !same(*before * odom_from_base, far->map_from_base)) return Place::kUnsure;
+  goOnAt(*far, odom_from_base);
+  return Place::kFound;
+}
+
+// What the graph takes for odometry goes on from where the robot is; the rates must not learn from a slip.
+void Mapper::goOnAt(const PoseEstimate& found, const Pose2& odom_from_base) {
+  const Pose2 slip = filter_.pose().map_from_base.inverse() * found.map_from_base;
   whole_from_odom_ = whole_from_odom_ * odom_from_base * slip * odom_from_base.inverse();
-  filter_.place(*found);
-  contradictions_ = 0;
+  filter_.place(found);
+  found_map_from_odom_.reset();
+  doubts_ = 0;
   ++slips_;
-  return true;
 }
 
 void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
@@ -189,6 +200,7 @@ void Mapper::reset() {
   last_inserted_.reset();
   contradictions_ = 0;
   found_map_from_odom_.reset();
+  doubts_ = 0;
   whole_from_odom_ = {};
   slips_ = 0;
   ++epoch_;

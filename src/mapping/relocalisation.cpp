@@ -1,5 +1,6 @@
 #include "cornerstone/mapping/relocalisation.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,7 +16,10 @@ constexpr double kWideStep_rad = 3 * M_PI / 180, kFineStep_rad = 1 * M_PI / 180;
 constexpr double kWideReach_m = 0.25, kFineReach_m = 0.12;  // of a beam end to the surface it agrees with
 constexpr std::size_t kBeams = 90;                          // that take part, spread over the look
 constexpr std::size_t kKept = 8;                            // different poses that are sought again
-constexpr double kGain = 0.1;                               // in agreement against odometry's pose
+// Of the fitted place, in its vaguest direction: a single wall (a board set up before the robot) fits in many
+// places.
+constexpr double kWidest_m = 0.1;
+constexpr double kGain = 0.1;  // in agreement against odometry's pose
 // What a search prefers to its edge, where all agree alike (along a corridor): odometry's pose.
 constexpr double kNearness = 0.05;
 constexpr double kDifferent_m = 0.5, kDifferent_rad = 15 * M_PI / 180;
@@ -48,9 +52,7 @@ class Votes {
   Votes(const OccupancyGrid& grid, const CellWindow& window, double reach_m)
       : at_(window.geometry), votes_(window.cells.size()) {
     for (std::size_t i = 0; i < votes_.size(); ++i)
-      votes_[i] =
-          window.cells[i] != 0 && grid.scale().occupied(window.cells[i]) < grid.params().prior_occupied ? -1
-                                                                                                        : 0;
+      votes_[i] = EvidenceScale::logOddsOf(window.cells[i]) < 0 ? -1 : 0;
     const std::vector<SurfacePoint> surface = grid.readSurface(window);
     for (int row = 0; row < at_.rows; ++row)
       for (int col = 0; col < at_.cols; ++col)
@@ -133,6 +135,12 @@ std::vector<Candidate> search(const Votes& votes, const std::vector<Eigen::Vecto
   return found;
 }
 
+double widest(const Eigen::Matrix3d& covariance) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(covariance.topLeftCorner<2, 2>());
+  return std::sqrt(std::max(0.0, axes.eigenvalues()(1)));
+}
+
 }  // namespace
 
 void describe(ParamVisitor& visitor, RelocalisationParams& params) {
@@ -175,11 +183,11 @@ std::optional<PoseEstimate> relocalise(const RangeScan& scan, const OccupancyGri
   best = bestDifferent(best);
   if (best.empty()) return std::nullopt;
   if (best.size() > 1 && best[1].agreeing > params.max_rival_share * best[0].agreeing) return std::nullopt;
-  // As vague as the steps of the search.
+  // Vaguer than the search is coarse: the fit decides.
   const Eigen::Matrix3d vague =
-      Eigen::Vector3d(kFineStep_m, kFineStep_m, kFineStep_rad).cwiseAbs2().asDiagonal();
+      Eigen::Vector3d(2 * kWideStep_m, 2 * kWideStep_m, 2 * kWideStep_rad).cwiseAbs2().asDiagonal();
   const ScanFit fitted = fitScan(scan, grid, {{best[0].map_from_base, vague}, 1}, fit);
-  if (fitted.state != FitState::kFitted) return std::nullopt;
+  if (fitted.state != FitState::kFitted || widest(fitted.pose.covariance) > kWidest_m) return std::nullopt;
   const double agreeing = fine.agreeing(ends_m, fitted.pose.map_from_base);
   if (agreeing < params.min_agreeing_share || agreeing < fine.agreeing(ends_m, around.map_from_base) + kGain)
     return std::nullopt;

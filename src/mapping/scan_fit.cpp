@@ -158,6 +158,14 @@ double innovationOf(const Pose2& solution, const Eigen::Matrix3d& information, c
   return std::sqrt(std::max(0.0, pull.dot(decomposed.solve(pull))));
 }
 
+// Ends on free floor, farther than the gate from every surface.
+int countOnFree(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces, const Pose2& pose,
+                const ScanFitParams& params) {
+  int count = 0;
+  for (const BeamEnd& end : ends) count += surfaces.isFree(pose * end.in_base_m, params.gate_m);
+  return count;
+}
+
 double agreeingShare(const std::vector<LineMatch>& matches, const Pose2& pose) {
   int agreeing = 0;
   for (const LineMatch& match : matches) agreeing += std::abs(whitened(match, pose)) < 3;
@@ -207,7 +215,7 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitS
   std::vector<LineMatch> matches;
   for (int round = 0; round < params.max_rounds; ++round) {
     matches = pairEnds(ends, surfaces, pose, params);
-    if (static_cast<int>(matches.size()) < params.min_matches) return fit;
+    if (static_cast<int>(matches.size()) < params.min_matches) break;
     const Pose2 before = pose;
     pose = solve(matches, pose, prior, params, correlated);
     if (!pose.isFinite()) return fit;
@@ -216,6 +224,8 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitS
   }
   fit.matches = static_cast<int>(matches.size());
   fit.agreeing_share = agreeingShare(matches, pose);
+  fit.on_free = countOnFree(ends, surfaces, pose, params);
+  if (fit.matches < params.min_matches) return fit;
   fit.state = fit.agreeing_share < params.min_agreeing_share ? FitState::kContradicts : FitState::kFitted;
   if (fit.state != FitState::kFitted) return fit;
   const Eigen::Matrix3d information = equationsAt(matches, pose, correlated, params.loss_sigmas).information;

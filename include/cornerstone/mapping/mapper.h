@@ -71,7 +71,10 @@ class Mapper {
 
  private:
   void predict(const Pose2& odom_from_base);
-  bool hasSlipped(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit);
+  enum class Place { kAsFitted, kFound, kUnsure };  // kUnsure: elsewhere, if the next scan agrees
+  bool isDoubtful(const ScanFit& fit) const;
+  Place seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit);
+  void goOnAt(const PoseEstimate& found, const Pose2& odom_from_base);
   void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
   void straighten();                                                  // the map, by what the graph knows
   void redraw();
@@ -95,6 +98,7 @@ class Mapper {
   std::optional<Pose2> last_inserted_;  // map_from_base
   int contradictions_ = 0;
   std::optional<Pose2> found_map_from_odom_;  // of the last scan, by a wide search
+  int doubts_ = 0;                            // doubtful scans in a row
   int slips_ = 0;
   Pose2 whole_from_odom_;  // odometry with the slips that were found put in
   std::uint32_t epoch_ = 1;

@@ -3,9 +3,9 @@
 //
 // Coarse to fine: beam ends are counted on squares that lie near a surface of the map and on squares that are
 // surely free; the best different poses are sought again in smaller steps, the rest is a scan fit
-// (scan_fit.h). A pose is an answer only if nearly all that the map knows of agrees with it, more than at
-// odometry's, and no different pose does nearly as well: in a round room, along a bare corridor, or where the
-// world has changed, there is none.
+// (scan_fit.h). A pose is an answer only if nearly all of the scan agrees with the map there, more than at
+// odometry's pose, the fit leaves no direction open, and no different pose does nearly as well: in a round
+// room, before a single wall, along a bare corridor, or where the world has changed, there is none.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ struct RelocalisationParams {
   double doubtful_share = 0.8;
   double slip_reach_m = 0.3;  // around odometry's pose
   double slip_reach_rad = 15 * M_PI / 180;
-  double reach_m = 1;  // of the search at every heading, after half of max_contradictions; 0: none
+  double reach_m = 1;  // of the search at every heading, from the second doubtful scan in a row on; 0: none
   double min_agreeing_share = 0.7;  // of the beam ends: on a surface, less those on free floor
   // A different pose (half a metre or 15 degrees away) that agrees by more than this share of the best one's:
   // no answer.
