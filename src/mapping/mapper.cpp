@@ -122,8 +122,7 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
   const RelocalisationParams& params = params_.relocalisation;
   const std::optional<Pose2> before = found_map_from_odom_;
   found_map_from_odom_.reset();
-  doubts_ = isDoubtful(fit) ? doubts_ + 1 : 0;
-  if (doubts_ == 0) return Place::kAsFitted;
+  if (!isDoubtful(fit)) return Place::kAsFitted;
   const Pose2 by_odometry = filter_.pose().map_from_base;
   const auto found = relocalise(scan, grid(), {by_odometry, params.slip_reach_m, params.slip_reach_rad},
                                 params_.fit, params);
@@ -131,7 +130,6 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
     goOnAt(*found, odom_from_base);
     return Place::kFound;
   }
-  if (doubts_ < 2) return Place::kAsFitted;
   const auto far = relocalise(scan, grid(), {by_odometry, params.reach_m, M_PI}, params_.fit, params);
   if (!far) return Place::kAsFitted;
   found_map_from_odom_ = far->map_from_base * odom_from_base.inverse();
@@ -146,7 +144,6 @@ void Mapper::goOnAt(const PoseEstimate& found, const Pose2& odom_from_base) {
   whole_from_odom_ = whole_from_odom_ * odom_from_base * slip * odom_from_base.inverse();
   filter_.place(found);
   found_map_from_odom_.reset();
-  doubts_ = 0;
   ++slips_;
 }
 
@@ -200,7 +197,6 @@ void Mapper::reset() {
   last_inserted_.reset();
   contradictions_ = 0;
   found_map_from_odom_.reset();
-  doubts_ = 0;
   whole_from_odom_ = {};
   slips_ = 0;
   ++epoch_;
