@@ -91,7 +91,8 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
   const Place place = seek(scan, odom_from_base, fit);
   if (place == Place::kAsFitted && fit.state == FitState::kFitted) filter_.correct(fit.pose);
-  const bool contradicts = place != Place::kFound && fit.state == FitState::kContradicts;
+  const bool contradicts =
+      place == Place::kUnsure || (place == Place::kAsFitted && fit.state == FitState::kContradicts);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
 
   const bool says_something =
@@ -124,17 +125,19 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
   found_map_from_odom_.reset();
   if (!isDoubtful(fit)) return Place::kAsFitted;
   const Pose2 by_odometry = filter_.pose().map_from_base;
-  const auto found = relocalise(scan, grid(), {by_odometry, params.slip_reach_m, params.slip_reach_rad},
-                                params_.fit, params);
-  if (found) {
-    goOnAt(*found, odom_from_base);
+  const auto sought = [&](double reach_m, double reach_rad) {
+    return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
+  };
+  const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
+  if (near.pose) {
+    goOnAt(*near.pose, odom_from_base);
     return Place::kFound;
   }
-  const auto far = relocalise(scan, grid(), {by_odometry, params.reach_m, M_PI}, params_.fit, params);
-  if (!far) return Place::kAsFitted;
-  found_map_from_odom_ = far->map_from_base * odom_from_base.inverse();
-  if (!before || !same(*before * odom_from_base, far->map_from_base)) return Place::kUnsure;
-  goOnAt(*far, odom_from_base);
+  const Relocalisation far = sought(params.reach_m, M_PI);
+  if (!far.pose) return far.elsewhere ? Place::kUnsure : Place::kAsFitted;
+  found_map_from_odom_ = far.pose->map_from_base * odom_from_base.inverse();
+  if (!before || !same(*before * odom_from_base, far.pose->map_from_base)) return Place::kUnsure;
+  goOnAt(*far.pose, odom_from_base);
   return Place::kFound;
 }
 

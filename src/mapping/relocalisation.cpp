@@ -163,12 +163,10 @@ void requireValid(const RelocalisationParams& params) {
   requireWithin(params.max_rival_share, 0, 1, "max_rival_share");
 }
 
-std::optional<PoseEstimate> relocalise(const RangeScan& scan, const OccupancyGrid& grid,
-                                       const SearchWindow& around, const ScanFitParams& fit,
-                                       const RelocalisationParams& params) {
+Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, const SearchWindow& around,
+                          const ScanFitParams& fit, const RelocalisationParams& params) {
   const std::vector<Eigen::Vector2d> ends_m = endsOf(scan, grid.params());
-  if (!(around.reach_m > 0) || grid.empty() || static_cast<int>(ends_m.size()) < fit.min_matches)
-    return std::nullopt;
+  if (!(around.reach_m > 0) || grid.empty() || static_cast<int>(ends_m.size()) < fit.min_matches) return {};
   const CellWindow window = windowAround(grid, ends_m, around.map_from_base, around.reach_m);
   const Votes wide(grid, window, kWideReach_m), fine(grid, window, kFineReach_m);
   std::vector<Candidate> best;
@@ -181,17 +179,17 @@ std::optional<PoseEstimate> relocalise(const RangeScan& scan, const OccupancyGri
     best.push_back(near.front());
   }
   best = bestDifferent(best);
-  if (best.empty()) return std::nullopt;
-  if (best.size() > 1 && best[1].agreeing > params.max_rival_share * best[0].agreeing) return std::nullopt;
   // Vaguer than the search is coarse: the fit decides.
   const Eigen::Matrix3d vague =
       Eigen::Vector3d(2 * kWideStep_m, 2 * kWideStep_m, 2 * kWideStep_rad).cwiseAbs2().asDiagonal();
-  const ScanFit fitted = fitScan(scan, grid, {{best[0].map_from_base, vague}, 1}, fit);
-  if (fitted.state != FitState::kFitted || widest(fitted.pose.covariance) > kWidest_m) return std::nullopt;
+  const ScanFit fitted = fitScan(scan, grid, {{best.front().map_from_base, vague}, 1}, fit);
   const double agreeing = fine.agreeing(ends_m, fitted.pose.map_from_base);
   if (agreeing < params.min_agreeing_share || agreeing < fine.agreeing(ends_m, around.map_from_base) + kGain)
-    return std::nullopt;
-  return fitted.pose;
+    return {};
+  if (fitted.state != FitState::kFitted || widest(fitted.pose.covariance) > kWidest_m ||
+      (best.size() > 1 && best[1].agreeing > params.max_rival_share * best[0].agreeing))
+    return {true, std::nullopt};
+  return {true, fitted.pose};
 }
 
 }  // namespace cornerstone

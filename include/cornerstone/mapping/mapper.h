@@ -71,7 +71,7 @@ class Mapper {
 
  private:
   void predict(const Pose2& odom_from_base);
-  enum class Place { kAsFitted, kFound, kUnsure };  // kUnsure: elsewhere, if the next scan agrees
+  enum class Place { kAsFitted, kFound, kUnsure };  // kUnsure: perhaps elsewhere
   bool isDoubtful(const ScanFit& fit) const;
   Place seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit);
   void goOnAt(const PoseEstimate& found, const Pose2& odom_from_base);

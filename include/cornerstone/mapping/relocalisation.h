@@ -36,9 +36,11 @@ struct SearchWindow {
   double reach_rad = M_PI;
 };
 
-// map_from_base with the covariance of the scan fit; none where the scan does not single out a pose.
-std::optional<PoseEstimate> relocalise(const RangeScan& scan, const OccupancyGrid& grid,
-                                       const SearchWindow& window, const ScanFitParams& fit,
-                                       const RelocalisationParams& params);
+struct Relocalisation {
+  bool elsewhere = false;            // the scan fits well at another pose than odometry's, perhaps at several
+  std::optional<PoseEstimate> pose;  // map_from_base by the scan fit, where the scan singles one out
+};
+Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, const SearchWindow& window,
+                          const ScanFitParams& fit, const RelocalisationParams& params);
 
 }  // namespace cornerstone
