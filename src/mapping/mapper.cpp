@@ -89,16 +89,15 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
   if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
-  const Place place = seek(scan, odom_from_base, fit);
-  if (place == Place::kAsFitted && fit.state == FitState::kFitted) filter_.correct(fit.pose);
+  place_ = seek(scan, odom_from_base, fit);
+  if (place_ == Place::kAsFitted && fit.state == FitState::kFitted) filter_.correct(fit.pose);
   const bool contradicts =
-      place == Place::kUnsure || (place == Place::kAsFitted && fit.state == FitState::kContradicts);
+      place_ == Place::kUnsure || (place_ == Place::kAsFitted && fit.state == FitState::kContradicts);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
-  const bool trusted =
-      place != Place::kUnsure && (contradictions_ == 0 || contradictions_ > params_.max_contradictions);
+  const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
   const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
   if (remembers) remember(raw, whole_from_odom_ * odom_from_base);
@@ -120,21 +119,22 @@ bool Mapper::isDoubtful(const ScanFit& fit) const {
 // Where scan and odometry exclude each other the robot is sought nearby, then at every heading. There one
 // look may mislead: two in a row have to be found at the same pose.
 Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit) {
+  constexpr double kAsGood = 0.9;  // a place nearby needs this much of the best one's agreement
   const RelocalisationParams& params = params_.relocalisation;
   const std::optional<Pose2> before = found_map_from_odom_;
   found_map_from_odom_.reset();
-  if (!isDoubtful(fit)) return Place::kAsFitted;
+  if (place_ != Place::kUnsure && !isDoubtful(fit)) return Place::kAsFitted;
   const Pose2 by_odometry = filter_.pose().map_from_base;
   const auto sought = [&](double reach_m, double reach_rad) {
     return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
   };
   const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
-  if (near.pose) {
+  const Relocalisation far = sought(params.reach_m, M_PI);
+  if (near.pose && near.agreeing >= kAsGood * far.agreeing) {
     goOnAt(*near.pose, odom_from_base);
     return Place::kFound;
   }
-  const Relocalisation far = sought(params.reach_m, M_PI);
-  if (!far.pose) return far.elsewhere ? Place::kUnsure : Place::kAsFitted;
+  if (!far.pose) return near.elsewhere || far.elsewhere ? Place::kUnsure : Place::kAsFitted;
   found_map_from_odom_ = far.pose->map_from_base * odom_from_base.inverse();
   if (!before || !same(*before * odom_from_base, far.pose->map_from_base)) return Place::kUnsure;
   goOnAt(*far.pose, odom_from_base);
@@ -200,6 +200,7 @@ void Mapper::reset() {
   last_inserted_.reset();
   contradictions_ = 0;
   found_map_from_odom_.reset();
+  place_ = Place::kAsFitted;
   whole_from_odom_ = {};
   slips_ = 0;
   ++epoch_;

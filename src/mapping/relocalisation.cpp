@@ -15,7 +15,7 @@ constexpr double kWideStep_m = 0.25, kFineStep_m = 0.1;
 constexpr double kWideStep_rad = 3 * M_PI / 180, kFineStep_rad = 1 * M_PI / 180;
 constexpr double kWideReach_m = 0.25, kFineReach_m = 0.12;  // of a beam end to the surface it agrees with
 constexpr std::size_t kBeams = 90;                          // that take part, spread over the look
-constexpr std::size_t kKept = 8;                            // different poses that are sought again
+constexpr std::size_t kKept = 24;                           // different poses that are sought again
 // Of the fitted place, in its vaguest direction: a single wall (a board set up before the robot) fits in many
 // places.
 constexpr double kWidest_m = 0.1;
@@ -188,8 +188,8 @@ Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, cons
     return {};
   if (fitted.state != FitState::kFitted || widest(fitted.pose.covariance) > kWidest_m ||
       (best.size() > 1 && best[1].agreeing > params.max_rival_share * best[0].agreeing))
-    return {true, std::nullopt};
-  return {true, fitted.pose};
+    return {true, std::nullopt, agreeing};
+  return {true, fitted.pose, agreeing};
 }
 
 }  // namespace cornerstone

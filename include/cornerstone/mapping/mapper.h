@@ -98,6 +98,7 @@ class Mapper {
   std::optional<Pose2> last_inserted_;  // map_from_base
   int contradictions_ = 0;
   std::optional<Pose2> found_map_from_odom_;  // of the last scan, by a wide search
+  Place place_ = Place::kAsFitted;            // of the last scan
   int slips_ = 0;
   Pose2 whole_from_odom_;  // odometry with the slips that were found put in
   std::uint32_t epoch_ = 1;

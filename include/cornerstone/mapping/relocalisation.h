@@ -39,6 +39,7 @@ struct SearchWindow {
 struct Relocalisation {
   bool elsewhere = false;            // the scan fits well at another pose than odometry's, perhaps at several
   std::optional<PoseEstimate> pose;  // map_from_base by the scan fit, where the scan singles one out
+  double agreeing = 0;               // of the ends, at the best pose
 };
 Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, const SearchWindow& window,
                           const ScanFitParams& fit, const RelocalisationParams& params);
