@@ -21,7 +21,10 @@ struct RelocalisationParams {
   double doubtful_share = 0.8;
   double slip_reach_m = 0.3;  // around odometry's pose
   double slip_reach_rad = 15 * M_PI / 180;
-  double reach_m = 1;               // of the search at every heading; 0: none
+  double reach_m = 1;  // of the search at every heading; 0: none
+  // Looks with less of a view are not sought at every heading: a quarter of a rectangular room lies on each
+  // of the others.
+  double min_view_rad = 150 * M_PI / 180;
   double min_agreeing_share = 0.7;  // of the beam ends: on a surface, less those on free floor
   // A different pose (half a metre or 15 degrees away) that agrees by more than this share of the best one's:
   // no answer.
