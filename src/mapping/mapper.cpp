@@ -21,6 +21,7 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.group("fit", [&] { describe(visitor, params.fit); });
   visitor.group("odometry", [&] { describe(visitor, params.odometry); });
   visitor.group("graph", [&] { describe(visitor, params.graph); });
+  visitor.group("relocalisation", [&] { describe(visitor, params.relocalisation); });
   visitor.field("fit_scans", params.fit_scans);
   visitor.field("max_contradictions", params.max_contradictions);
 }
@@ -36,6 +37,17 @@ void requireSane(const Pose2& odom_from_base) {
     throw InputError("odometry: odom_from_base lies too far from the frame's origin (5 km at most)");
 }
 
+// Angle between the first and the last beam.
+double viewOf(const RangeScan& scan) {
+  return scan.beams.empty() ? 0 : scan.beams.back().bearing_rad - scan.beams.front().bearing_rad;
+}
+
+bool same(const Pose2& a, const Pose2& b) {
+  constexpr double kSame_m = 0.15, kSame_rad = 3 * M_PI / 180;
+  const Pose2 apart = a.inverse() * b;
+  return apart.translation().norm() < kSame_m && std::abs(apart.yaw_rad) < kSame_rad;
+}
+
 }  // namespace
 
 Mapper::Mapper(const MapperParams& params, std::size_t levels)
@@ -44,6 +56,7 @@ Mapper::Mapper(const MapperParams& params, std::size_t levels)
       filter_(params.odometry),
       graph_(params.graph, params.odometry) {
   requireValid(params.fit);
+  requireValid(params.relocalisation);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
 
@@ -81,15 +94,18 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   const RangeScan scan = corrected(raw, graph_.calibration());
   ScanFit fit;
   if (params_.fit_scans) fit = fitScan(scan, grid(), {filter_.pose(), newShare(scan)}, params_.fit);
-  if (fit.state == FitState::kFitted) filter_.correct(fit.pose);
-  contradictions_ = fit.state == FitState::kContradicts ? contradictions_ + 1 : 0;
+  place_ = seek(scan, odom_from_base, fit);
+  if (place_ == Place::kAsFitted && fit.state == FitState::kFitted) filter_.correct(fit.pose);
+  const bool contradicts =
+      place_ == Place::kUnsure || (place_ == Place::kAsFitted && fit.state == FitState::kContradicts);
+  contradictions_ = contradicts ? contradictions_ + 1 : 0;
 
   const bool says_something =
       std::any_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; });
   const bool trusted = contradictions_ == 0 || contradictions_ > params_.max_contradictions;
   const bool insert = says_something && trusted;
   const bool remembers = insert && params_.graph.use && params_.fit_scans && !loaded_;
-  if (remembers) remember(raw, odom_from_base);
+  if (remembers) remember(raw, whole_from_odom_ * odom_from_base);
   if (insert) {
     current().insert(scan, filter_.pose().map_from_base, motion());
     last_inserted_ = filter_.pose().map_from_base;
@@ -97,6 +113,46 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   if (remembers) straighten();
   map_from_odom_ = filter_.pose().map_from_base * odom_from_base.inverse();
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
+}
+
+bool Mapper::isDoubtful(const ScanFit& fit) const {
+  const RelocalisationParams& params = params_.relocalisation;
+  return fit.state == FitState::kContradicts || fit.innovation_sigmas > params.slip_sigmas ||
+         fit.knownAgreeingShare(params_.fit.min_matches) < params.doubtful_share;
+}
+
+// Where scan and odometry exclude each other the robot is sought nearby, then at every heading. There one
+// look may mislead: two in a row have to be found at the same pose.
+Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit) {
+  constexpr double kAsGood = 0.9;  // a place nearby needs this much of the best one's agreement
+  const RelocalisationParams& params = params_.relocalisation;
+  const std::optional<Pose2> before = found_map_from_odom_;
+  found_map_from_odom_.reset();
+  if (place_ != Place::kUnsure && !isDoubtful(fit)) return Place::kAsFitted;
+  const Pose2 by_odometry = filter_.pose().map_from_base;
+  const auto sought = [&](double reach_m, double reach_rad) {
+    return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
+  };
+  const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
+  const Relocalisation far = sought(viewOf(scan) < params.min_view_rad ? 0 : params.reach_m, M_PI);
+  if (near.pose && near.agreeing >= kAsGood * far.agreeing) {
+    goOnAt(*near.pose, odom_from_base);
+    return Place::kFound;
+  }
+  if (!far.pose) return near.elsewhere || far.elsewhere ? Place::kUnsure : Place::kAsFitted;
+  found_map_from_odom_ = far.pose->map_from_base * odom_from_base.inverse();
+  if (!before || !same(*before * odom_from_base, far.pose->map_from_base)) return Place::kUnsure;
+  goOnAt(*far.pose, odom_from_base);
+  return Place::kFound;
+}
+
+// What the graph takes for odometry goes on from where the robot is; the rates must not learn from a slip.
+void Mapper::goOnAt(const PoseEstimate& found, const Pose2& odom_from_base) {
+  const Pose2 slip = filter_.pose().map_from_base.inverse() * found.map_from_base;
+  whole_from_odom_ = whole_from_odom_ * odom_from_base * slip * odom_from_base.inverse();
+  filter_.place(found);
+  found_map_from_odom_.reset();
+  ++slips_;
 }
 
 void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
@@ -148,6 +204,10 @@ void Mapper::reset() {
   start_.reset();
   last_inserted_.reset();
   contradictions_ = 0;
+  found_map_from_odom_.reset();
+  place_ = Place::kAsFitted;
+  whole_from_odom_ = {};
+  slips_ = 0;
   ++epoch_;
 }
 

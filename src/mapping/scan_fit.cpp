@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "cornerstone/base/errors.h"
@@ -115,26 +117,53 @@ Pose2 solve(const std::vector<LineMatch>& matches, const Pose2& start, const Pos
   return pose;
 }
 
-// The solution takes the scan at its word, L for its information. What one look cannot know (F) and what it
-// repeats (new share n) leave it L' = n (I + L F)^-1 L, which holds where L has no rank too. With P the
-// prior's information, d the solution's step from the prior: L (scan - prior) = (L + P) d, and the step that
-// L' allows is
-//   d' = (L' + P)^-1 n (I + L F)^-1 (L + P) d.
-PoseEstimate tempered(const Pose2& solution, const Eigen::Matrix3d& information, const ScanFitStart& start,
-                      const ScanFitParams& params) {
+// What the information of a look amounts to, with what one look cannot know (F) and what it repeats (new
+// share n): n (I + L F)^-1 is what L has to be multiplied with.
+Eigen::Matrix3d temperOf(const Eigen::Matrix3d& information, double new_share, const ScanFitParams& params) {
   const Eigen::Matrix3d floor =
       Eigen::Vector3d(params.look_sigma_m, params.look_sigma_m, params.look_sigma_rad)
           .cwiseAbs2()
           .asDiagonal();
+  return new_share * (Eigen::Matrix3d::Identity() + information * floor).inverse();
+}
+
+// The solution takes the scan at its word, L for its information. Its temper T leaves L' = T L, which holds
+// where L has no rank too. With P the prior's information, d the solution's step from the prior:
+// L (scan - prior) = (L + P) d, and the step that L' allows is
+//   d' = (L' + P)^-1 T (L + P) d.
+PoseEstimate tempered(const Pose2& solution, const Eigen::Matrix3d& information, const ScanFitStart& start,
+                      const ScanFitParams& params) {
   const Eigen::Matrix3d prior = start.prior.covariance.inverse();
-  const Eigen::Matrix3d temper =
-      start.new_share * (Eigen::Matrix3d::Identity() + information * floor).inverse();
+  const Eigen::Matrix3d temper = temperOf(information, start.new_share, params);
   const Pose2& from = start.prior.map_from_base;
   const Eigen::Vector3d step = differenceOf(solution, from);
   const Eigen::Matrix3d covariance = (temper * information + prior).inverse();
   const Eigen::Vector3d allowed = covariance * temper * (information + prior) * step;
   return {{from.x_m + allowed.x(), from.y_m + allowed.y(), wrapAngle(from.yaw_rad + allowed.z())},
           (covariance + covariance.transpose()) / 2};
+}
+
+// How far scan and prior lie apart, in their common sigmas. With g = L' (scan - prior) = T (L + P) d, and C
+// the prior's covariance, the sum of both covariances' inverse is (I + L' C)^-1 L', so that
+//   |scan - prior|^2 = g' (L' + L' C L')^+ g.
+double innovationOf(const Pose2& solution, const Eigen::Matrix3d& information, const ScanFitStart& start,
+                    const ScanFitParams& params) {
+  const Eigen::Matrix3d temper = temperOf(information, 1, params);
+  const Eigen::Matrix3d& covariance = start.prior.covariance;
+  const Eigen::Matrix3d known = temper * information;
+  const Eigen::Vector3d pull =
+      temper * (information + covariance.inverse()) * differenceOf(solution, start.prior.map_from_base);
+  const Eigen::Matrix3d spread = known + known * covariance * known.transpose();
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> decomposed((spread + spread.transpose()) / 2);
+  return std::sqrt(std::max(0.0, pull.dot(decomposed.solve(pull))));
+}
+
+// Ends on free floor, farther than the gate from every surface.
+int countOnFree(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces, const Pose2& pose,
+                const ScanFitParams& params) {
+  int count = 0;
+  for (const BeamEnd& end : ends) count += surfaces.isFree(pose * end.in_base_m, params.gate_m);
+  return count;
 }
 
 double agreeingShare(const std::vector<LineMatch>& matches, const Pose2& pose) {
@@ -186,7 +215,7 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitS
   std::vector<LineMatch> matches;
   for (int round = 0; round < params.max_rounds; ++round) {
     matches = pairEnds(ends, surfaces, pose, params);
-    if (static_cast<int>(matches.size()) < params.min_matches) return fit;
+    if (static_cast<int>(matches.size()) < params.min_matches) break;
     const Pose2 before = pose;
     pose = solve(matches, pose, prior, params, correlated);
     if (!pose.isFinite()) return fit;
@@ -195,10 +224,13 @@ ScanFit fitScan(const RangeScan& scan, const OccupancyGrid& grid, const ScanFitS
   }
   fit.matches = static_cast<int>(matches.size());
   fit.agreeing_share = agreeingShare(matches, pose);
+  fit.on_free = countOnFree(ends, surfaces, pose, params);
+  if (fit.matches < params.min_matches) return fit;
   fit.state = fit.agreeing_share < params.min_agreeing_share ? FitState::kContradicts : FitState::kFitted;
-  if (fit.state == FitState::kFitted)
-    fit.pose =
-        tempered(pose, equationsAt(matches, pose, correlated, params.loss_sigmas).information, start, params);
+  if (fit.state != FitState::kFitted) return fit;
+  const Eigen::Matrix3d information = equationsAt(matches, pose, correlated, params.loss_sigmas).information;
+  fit.pose = tempered(pose, information, start, params);
+  fit.innovation_sigmas = innovationOf(pose, information, start, params);
   return fit;
 }
 

@@ -13,7 +13,7 @@ SurfaceLines::SurfaceLines(const OccupancyGrid& grid, const Eigen::Vector2d& low
       line_radius_m_(line_radius_m),
       lines_(surface_.size()) {}
 
-std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m, double gate_m) const {
+std::optional<Cell> SurfaceLines::nearestCell(const Eigen::Vector2d& point_m, double gate_m) const {
   const GridGeometry& at = window_.geometry;
   const Cell centre = at.cellAt(point_m);
   const int reach = static_cast<int>(std::ceil(gate_m / at.resolution_m));
@@ -30,9 +30,21 @@ std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m,
       best = {col, row};
     }
   if (best.col < 0) return std::nullopt;
-  KnownLine& line = lines_[window_.indexOf(best)];
-  if (!line.known) line = {true, lineAround(best)};
+  return best;
+}
+
+std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m, double gate_m) const {
+  const std::optional<Cell> cell = nearestCell(point_m, gate_m);
+  if (!cell) return std::nullopt;
+  KnownLine& line = lines_[window_.indexOf(*cell)];
+  if (!line.known) line = {true, lineAround(*cell)};
   return line.line;
+}
+
+bool SurfaceLines::isFree(const Eigen::Vector2d& point_m, double gate_m) const {
+  const Cell cell = window_.geometry.cellAt(point_m);
+  return window_.geometry.contains(cell) && EvidenceScale::logOddsOf(window_.at(cell)) < 0 &&
+         !nearestCell(point_m, gate_m);
 }
 
 std::optional<SurfaceLine> SurfaceLines::lineAround(Cell cell) const {

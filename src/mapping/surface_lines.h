@@ -19,8 +19,11 @@ class SurfaceLines {
                double line_radius_m);
   // Nearest surface point within gate_m, if its neighbours form a line.
   std::optional<SurfaceLine> nearest(const Eigen::Vector2d& point_m, double gate_m) const;
+  // Whether the map knows the point to be free and no surface point lies within gate_m.
+  bool isFree(const Eigen::Vector2d& point_m, double gate_m) const;
 
  private:
+  std::optional<Cell> nearestCell(const Eigen::Vector2d& point_m, double gate_m) const;
   std::optional<SurfaceLine> lineAround(Cell cell) const;
   struct KnownLine {
     bool known = false;

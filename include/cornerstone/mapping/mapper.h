@@ -5,6 +5,9 @@
 // each fit (scan_fit.h); where a scan fits nothing, odometry alone moves it on. Scans that contradict the map
 // in most of their beams are not inserted unless they go on doing so: then it is the world that changed.
 //
+// Wheels slip, and robots are pushed: where scan and odometry exclude each other the robot is sought on the
+// map (relocalisation.h).
+//
 // Behind that a graph of key frames bends the whole way so that all looks agree (frame_graph.h); when it
 // moves them, the map is drawn anew beside the running one, which goes on until the new one takes its place:
 // then the pose and map_from_odom step by what was corrected. In a loaded map there is no graph: its cells do
@@ -17,6 +20,7 @@
 #include "cornerstone/mapping/local_map.h"
 #include "cornerstone/mapping/map_redraw.h"
 #include "cornerstone/mapping/odometry_filter.h"
+#include "cornerstone/mapping/relocalisation.h"
 #include "cornerstone/mapping/scan_fit.h"
 
 namespace cornerstone {
@@ -26,6 +30,7 @@ struct MapperParams {
   ScanFitParams fit;
   OdometryNoise odometry;
   FrameGraphParams graph;
+  RelocalisationParams relocalisation;
   bool fit_scans = true;        // false: odometry as it is (for robots that localise by other means)
   int max_contradictions = 10;  // scans in a row that fit ill before they are taken for a changed world
 };
@@ -62,9 +67,14 @@ class Mapper {
   const FrameGraph& graph() const { return graph_; }
   std::uint32_t epoch() const { return epoch_; }
   int redraws() const { return redraws_; }  // how often the map was drawn anew in this epoch
+  int slips() const { return slips_; }  // how often the robot was not where odometry had it, in this epoch
 
  private:
   void predict(const Pose2& odom_from_base);
+  enum class Place { kAsFitted, kFound, kUnsure };  // kUnsure: perhaps elsewhere
+  bool isDoubtful(const ScanFit& fit) const;
+  Place seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit);
+  void goOnAt(const PoseEstimate& found, const Pose2& odom_from_base);
   void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
   void straighten();                                                  // the map, by what the graph knows
   void redraw();
@@ -87,6 +97,10 @@ class Mapper {
   std::optional<Pose2> start_;          // where a loaded map says the robot is
   std::optional<Pose2> last_inserted_;  // map_from_base
   int contradictions_ = 0;
+  std::optional<Pose2> found_map_from_odom_;  // of the last scan, by a wide search
+  Place place_ = Place::kAsFitted;            // of the last scan
+  int slips_ = 0;
+  Pose2 whole_from_odom_;  // odometry with the slips that were found put in
   std::uint32_t epoch_ = 1;
 };
 

@@ -43,6 +43,13 @@ struct ScanFit {
   PoseEstimate pose;  // the prior unless fitted
   int matches = 0;
   double agreeing_share = 0;
+  int on_free = 0;               // ends that lie by no surface but on free floor
+  double innovation_sigmas = 0;  // how far scan and prior lie apart, in their common sigmas
+  // Of all ends that the map knows anything of: those that lie on their line. 1 where it knows hardly any.
+  double knownAgreeingShare(int min_known) const {
+    const int known = matches + on_free;
+    return known < min_known ? 1 : agreeing_share * matches / known;
+  }
 };
 
 // What a scan is fitted to, and what is known before.

@@ -1,0 +1,50 @@
+// Where a robot stands when its wheels have slipped, or somebody pushed it: the pose at which a scan lies on
+// the map, sought around where odometry puts it.
+//
+// Coarse to fine: beam ends are counted on squares that lie near a surface of the map and on squares that are
+// surely free; the best different poses are sought again in smaller steps, the rest is a scan fit
+// (scan_fit.h). A pose is an answer only if nearly all of the scan agrees with the map there, more than at
+// odometry's pose, the fit leaves no direction open, and no different pose does nearly as well: in a round
+// room, before a single wall, along a bare corridor, or where the world has changed, there is none.
+#pragma once
+
+#include <optional>
+
+#include "cornerstone/mapping/scan_fit.h"
+
+namespace cornerstone {
+
+struct RelocalisationParams {
+  // A search nearby: where a fitted scan and odometry differ by more than this in their common sigmas, or
+  // where fewer of its paired ends agree with the map than this share (19 of 20 scans have 0.85).
+  double slip_sigmas = 5;
+  double doubtful_share = 0.8;
+  double slip_reach_m = 0.3;  // around odometry's pose
+  double slip_reach_rad = 15 * M_PI / 180;
+  double reach_m = 1;  // of the search at every heading; 0: none
+  // Looks with less of a view are not sought at every heading: a quarter of a rectangular room lies on each
+  // of the others.
+  double min_view_rad = 150 * M_PI / 180;
+  double min_agreeing_share = 0.7;  // of the beam ends: on a surface, less those on free floor
+  // A different pose (half a metre or 15 degrees away) that agrees by more than this share of the best one's:
+  // no answer.
+  double max_rival_share = 0.8;
+};
+void describe(ParamVisitor& visitor, RelocalisationParams& params);
+void requireValid(const RelocalisationParams& params);  // throws InputError naming the parameter
+
+struct SearchWindow {
+  Pose2 map_from_base;  // its middle: where odometry puts the robot
+  double reach_m = 0;
+  double reach_rad = M_PI;
+};
+
+struct Relocalisation {
+  bool elsewhere = false;            // the scan fits well at another pose than odometry's, perhaps at several
+  std::optional<PoseEstimate> pose;  // map_from_base by the scan fit, where the scan singles one out
+  double agreeing = 0;               // of the ends, at the best pose
+};
+Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, const SearchWindow& window,
+                          const ScanFitParams& fit, const RelocalisationParams& params);
+
+}  // namespace cornerstone
