@@ -37,11 +37,6 @@ void requireSane(const Pose2& odom_from_base) {
     throw InputError("odometry: odom_from_base lies too far from the frame's origin (5 km at most)");
 }
 
-// Angle between the first and the last beam.
-double viewOf(const RangeScan& scan) {
-  return scan.beams.empty() ? 0 : scan.beams.back().bearing_rad - scan.beams.front().bearing_rad;
-}
-
 bool same(const Pose2& a, const Pose2& b) {
   constexpr double kSame_m = 0.15, kSame_rad = 3 * M_PI / 180;
   const Pose2 apart = a.inverse() * b;
@@ -134,7 +129,7 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
     return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
   };
   const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
-  const Relocalisation far = sought(viewOf(scan) < params.min_view_rad ? 0 : params.reach_m, M_PI);
+  const Relocalisation far = sought(params.reach_m, M_PI);
   if (near.pose && near.agreeing >= kAsGood * far.agreeing) {
     goOnAt(*near.pose, odom_from_base);
     return Place::kFound;

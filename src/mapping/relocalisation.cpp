@@ -149,7 +149,6 @@ void describe(ParamVisitor& visitor, RelocalisationParams& params) {
   visitor.field("slip_reach_m", params.slip_reach_m);
   visitor.degrees("slip_reach_deg", params.slip_reach_rad);
   visitor.field("reach_m", params.reach_m);
-  visitor.degrees("min_view_deg", params.min_view_rad);
   visitor.field("min_agreeing_share", params.min_agreeing_share);
   visitor.field("max_rival_share", params.max_rival_share);
 }
@@ -160,7 +159,6 @@ void requireValid(const RelocalisationParams& params) {
   requireWithin(params.slip_reach_m, 0, 10, "slip_reach_m");
   requireWithin(params.slip_reach_rad, 0, 3.2, "slip_reach_deg");
   requireWithin(params.reach_m, 0, 10, "reach_m");
-  requireWithin(params.min_view_rad, 0, 7, "min_view_deg");
   requireWithin(params.min_agreeing_share, 0.3, 1, "min_agreeing_share");
   requireWithin(params.max_rival_share, 0, 1, "max_rival_share");
 }

@@ -141,7 +141,11 @@ class OccupancyMapperNodelet : public nodelet::Nodelet {
     const ros::WallTime start = ros::WallTime::now();
     try {
       const RangeScan scan = pending.convert(pose.level_from_sensor);
+      const int slips = mapper_->slips();
       mapper_->update(scan, pose.odom_from_base);
+      if (mapper_->slips() > slips)
+        NODELET_WARN_THROTTLE(10, "the robot was not where odometry had it (slips so far: %d)",
+                              mapper_->slips());
       diagnostics_->complain("");
       diagnostics_->processed((ros::WallTime::now() - start).toSec());
       publishScan(scan, pending.stamp);

@@ -14,17 +14,17 @@
 
 namespace cornerstone {
 
+// For sensors that see half a turn or more. A camera sees a quarter of a room, which lies nearly as well on
+// many places, and its errors are taken for slips: both searches are off by default (mapper_laser.yaml has
+// them).
 struct RelocalisationParams {
-  // A search nearby: where a fitted scan and odometry differ by more than this in their common sigmas, or
-  // where fewer of its paired ends agree with the map than this share (19 of 20 scans have 0.85).
+  // When to search: where scan and odometry differ by more than this in their common sigmas, or where of the
+  // ends that the map knows anything of fewer than this share agree with it.
   double slip_sigmas = 5;
   double doubtful_share = 0.8;
-  double slip_reach_m = 0.3;  // around odometry's pose
+  double slip_reach_m = 0;  // around odometry's pose, first; 0: none
   double slip_reach_rad = 15 * M_PI / 180;
-  double reach_m = 1;  // of the search at every heading; 0: none
-  // Looks with less of a view are not sought at every heading: a quarter of a rectangular room lies on each
-  // of the others.
-  double min_view_rad = 150 * M_PI / 180;
+  double reach_m = 0;               // of the search at every heading; 0: none
   double min_agreeing_share = 0.7;  // of the beam ends: on a surface, less those on free floor
   // A different pose (half a metre or 15 degrees away) that agrees by more than this share of the best one's:
   // no answer.
