@@ -24,9 +24,8 @@ constexpr double kNoise_m2 = 1.0;  // variance of a score without any wall
 // excuses the other.
 constexpr double kClear = 0.05;
 constexpr double kHardlyMore = 1.3;
-constexpr double kOneThing_m = 1.0;  // of outline: one thing that was moved is nothing to go by
-constexpr double kTie = 0.95;        // of the values: not told apart once neighbourhoods may give way
-constexpr double kSmallLead = 2.5;   // below it a rival is the reason rather than the contradictions
+constexpr double kTie = 0.95;       // of the values: not told apart once neighbourhoods may give way
+constexpr double kSmallLead = 2.5;  // below it a rival is the reason rather than the contradictions
 
 double valueOf(const PoseScore& score) { return score.agree - score.contradict; }
 
@@ -51,12 +50,6 @@ double neededAgreement_m(const PoseEvidence& evidence, const RegistrationParams&
   const double of_small_map_m =
       std::max(params.min_agreeing_share * evidence.smaller_map_m, params.min_agreeing_small_map_m);
   return std::min(params.min_agreeing_m, of_small_map_m);
-}
-
-double allowedContradiction(const PoseEvidence& evidence, const RegistrationParams& params) {
-  if (evidence.with_prior) return params.max_contradicting_share;
-  const double excused = evidence.scatter_m / params.excusing_scatter_m;
-  return std::min(params.max_contradicting_share, excused * excused);
 }
 
 }  // namespace
@@ -106,9 +99,6 @@ std::optional<std::string> reasonToRefuse(const PoseEvidence& evidence, const Re
   if (evidence.contradicting_m > params.max_contradicting_share * judged_m)
     return "too much wall contradicts: " + text(evidence.contradicting_m, 1) + " m of the " +
            text(judged_m, 1) + " m that both maps can judge";
-  if (evidence.contradicting_m > std::max(kOneThing_m, allowedContradiction(evidence, params) * judged_m))
-    return "walls that agree to " + text(100 * evidence.scatter_m, 1) + " cm leave no excuse for the " +
-           text(evidence.contradicting_m, 1) + " m that contradict: another place may look the same";
   if (evidence.second_best > kTie)
     return "another pose fits as well where the maps may bend: " + text(evidence.second_best, 2) +
            " of the best one's value";

@@ -131,7 +131,7 @@ std::optional<RefinedPose> refineOnEdges(const EdgeIndex& reference, const EdgeI
   // From the pivot to the current map's origin.
   refined.covariance = composeCovariance({x[0], x[1], x[2]}, quality.covariance,
                                          {-pivot_m.x(), -pivot_m.y(), 0}, Eigen::Matrix3d::Zero());
-  refined.rms_m = refined.scatter_m = quality.rms_m;
+  refined.rms_m = quality.rms_m;
   refined.spread = quality.spread;
   refined.partners = static_cast<int>(pairs.size());
   if (!refined.covariance.allFinite()) return std::nullopt;

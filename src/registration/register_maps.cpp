@@ -126,7 +126,6 @@ std::optional<RefinedPose> refine(const EvidencePair& maps, const Pose2& guess, 
           local->reference_from_current, whole->reference_from_current))
     return whole;
   local->spread = whole->spread;
-  local->scatter_m = whole->scatter_m;
   return local;
 }
 
@@ -181,7 +180,6 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
   if (!refined) return {{}, "too few edges agree"};
   PoseEvidence evidence = weighPoses(judged, params.fine_cell_m);
   evidence.spread = refined->spread;
-  evidence.scatter_m = std::max(refined->scatter_m, std::max(there.cell_m, here.cell_m) / std::sqrt(12.0));
   evidence.smaller_map_m =
       static_cast<double>(std::min(there.edges.size(), here.edges.size())) * params.fine_cell_m;
   evidence.with_prior = hints.prior.has_value();
@@ -230,7 +228,6 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("min_agreeing_small_map_m", params.min_agreeing_small_map_m);
   visitor.field("min_agreeing_with_prior_m", params.min_agreeing_with_prior_m);
   visitor.field("max_contradicting_share", params.max_contradicting_share);
-  visitor.field("excusing_scatter_m", params.excusing_scatter_m);
   visitor.field("min_spread", params.min_spread);
   visitor.field("min_probability", params.min_probability);
 }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "support/drawn_maps.h"
-#include "support/self_similar.h"
 
 namespace cornerstone {
 namespace {
@@ -207,14 +206,6 @@ TEST(RegisterMaps, RefusesABuildingThatIsItsOwnHalfTurn) {
   const GridMap a = draw(world, {Pose2{0, 0, 0.1}, {-1, -5, 15, 7}}),
                 b = draw(world, {Pose2{3, 1, 1.0}, {9, -5, 25, 7}});
   EXPECT_FALSE(align(a, b).registration.has_value());
-}
-
-// Next to nothing of it is shared: what alone speaks against the wrong pose is furniture.
-TEST(RegisterMaps, RefusesAFurnishedBuildingThatLooksTheSameElsewhere) {
-  for (const Likeness likeness : {Likeness::kHalfTurn, Likeness::kWings}) {
-    const SharedViews views = viewsOf(drawnBuilding({likeness, 12, 1}), 0.1, laserLook(), 1);
-    expectRefused(align(views.reference, views.current), {"another place may look the same"});
-  }
 }
 
 TEST(RegisterMaps, APriorElsewhereIsNotFollowed) {

@@ -32,8 +32,7 @@ struct PoseEvidence {
   double clear_rival = 0;    // the same of the best different pose that is contradicted as little
   double clear_rival_m = 0;  // length of wall that agrees with such a pose, at most
   double spread = 0;         // weakest over strongest direction of the refinement's information
-  double scatter_m = 0;  // of agreeing walls about one another, or of places within a cell where that is more
-  bool with_prior = false;  // only poses near a prior were looked at
+  bool with_prior = false;   // only poses near a prior were looked at
 };
 
 // By how many standard deviations the first of several rigid poses leads the best of the others, or no pose.

@@ -25,7 +25,6 @@ struct RefinedPose {
   Pose2 reference_from_current;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // (x, y, yaw) of the pose, m and rad
   double rms_m = 0;
-  double scatter_m = 0;  // the same of all edges, wherever the focus lies
   int partners = 0;
   double spread = 0;  // weakest over strongest translation direction of the information: 0 on an open axis
 };

@@ -50,11 +50,6 @@ struct RegistrationParams {
   // Of the walls that both maps can judge: bent maps of one place reach 0.15, large wrong matches begin at
   // 0.16.
   double max_contradicting_share = 0.15;
-  // What maps bend by lays walls on free space, too, but then agreeing walls scatter. Without a prior the
-  // share above holds where they scatter by 0.39 of this (3 cm) and more, and falls with the scatter's
-  // square: walls that meet to a centimetre leave no excuse for 5 % that contradict. That is furniture, and
-  // the place may be another one that looks the same.
-  double excusing_scatter_m = 0.08;
   // Weakest over strongest direction of the information: a corridor has next to none along its axis.
   double min_spread = 0.05;
   // Of being right, by a model fitted to many pairs (decision.h): a wrong frame is far worse than none.
