@@ -126,7 +126,7 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
   if (place_ != Place::kUnsure && !isDoubtful(fit)) return Place::kAsFitted;
   const Pose2 by_odometry = filter_.pose().map_from_base;
   const auto sought = [&](double reach_m, double reach_rad) {
-    return relocalise(scan, grid(), {by_odometry, reach_m, reach_rad}, params_.fit, params);
+    return relocalise({scan, grid()}, {by_odometry, reach_m, reach_rad}, params_.fit, params);
   };
   const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
   const Relocalisation far = sought(params.reach_m, M_PI);

@@ -163,8 +163,10 @@ void requireValid(const RelocalisationParams& params) {
   requireWithin(params.max_rival_share, 0, 1, "max_rival_share");
 }
 
-Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, const SearchWindow& around,
-                          const ScanFitParams& fit, const RelocalisationParams& params) {
+Relocalisation relocalise(const LookOnMap& look, const SearchWindow& around, const ScanFitParams& fit,
+                          const RelocalisationParams& params) {
+  const RangeScan& scan = look.scan;
+  const OccupancyGrid& grid = look.grid;
   const std::vector<Eigen::Vector2d> ends_m = endsOf(scan, grid.params());
   if (!(around.reach_m > 0) || grid.empty() || static_cast<int>(ends_m.size()) < fit.min_matches) return {};
   const CellWindow window = windowAround(grid, ends_m, around.map_from_base, around.reach_m);

@@ -35,7 +35,7 @@ TEST(Relocalisation, FindsARobotThatWasPushed) {
   const OccupancyGrid grid = mapOf(room, {{2, 2.5}, {4, 2.5}});
   const Pose2 truth{3, 2.4, 0.5};
   const Pose2 by_odometry = truth * Pose2{0.2, -0.15, 11 * kDegree};
-  expectFound(relocalise(test::scanOf(room, truth), grid, {by_odometry, 0.3, 15 * kDegree}, {}, {}), truth);
+  expectFound(relocalise({test::scanOf(room, truth), grid}, {by_odometry, 0.3, 15 * kDegree}, {}, {}), truth);
 }
 
 TEST(Relocalisation, FindsARobotThatWasTurnedByHand) {
@@ -43,14 +43,14 @@ TEST(Relocalisation, FindsARobotThatWasTurnedByHand) {
   const OccupancyGrid grid = mapOf(room, {{2, 2.5}, {4, 2.5}});
   const Pose2 truth{3, 2.4, 0.5};
   const Pose2 by_odometry = truth * Pose2{-0.6, 0.5, 160 * kDegree};
-  expectFound(relocalise(test::scanOf(room, truth), grid, {by_odometry, 1}, {}, {}), truth);
+  expectFound(relocalise({test::scanOf(room, truth), grid}, {by_odometry, 1}, {}, {}), truth);
 }
 
 TEST(Relocalisation, RefusesARoomThatLooksTheSameAfterAQuarterTurn) {
   test::Room square;
   square.addRectangle(0, 0, 4, 4);
   const OccupancyGrid grid = mapOf(square, {{2, 2}});
-  EXPECT_FALSE(relocalise(test::scanOf(square, {2, 2, 0.3}), grid, {{2.1, 2, 0.6}, 1}, {}, {}).pose);
+  EXPECT_FALSE(relocalise({test::scanOf(square, {2, 2, 0.3}), grid}, {{2.1, 2, 0.6}, 1}, {}, {}).pose);
 }
 
 TEST(Relocalisation, RefusesAWorldThatIsNotTheMaps) {
@@ -58,14 +58,14 @@ TEST(Relocalisation, RefusesAWorldThatIsNotTheMaps) {
   test::Room other;
   other.addRectangle(0.8, 0.7, 4.9, 3.3);
   other.addRectangle(3.6, 1.2, 4.2, 1.9);
-  EXPECT_FALSE(relocalise(test::scanOf(other, {2.5, 2.4, 0.3}), grid, {{2.5, 2.4, 0.3}, 1}, {}, {}).pose);
+  EXPECT_FALSE(relocalise({test::scanOf(other, {2.5, 2.4, 0.3}), grid}, {{2.5, 2.4, 0.3}, 1}, {}, {}).pose);
 }
 
 TEST(Relocalisation, AnEmptyMapAndAnEmptyScanGiveNoAnswer) {
   const test::Room room = test::officeRoom();
   const RangeScan scan = test::scanOf(room, {3, 2.4, 0.5});
-  EXPECT_FALSE(relocalise(scan, OccupancyGrid({}), {{}, 1}, {}, {}).pose);
-  EXPECT_FALSE(relocalise({}, mapOf(room, {{3, 2.5}}), {{}, 1}, {}, {}).pose);
+  EXPECT_FALSE(relocalise({scan, OccupancyGrid({})}, {{}, 1}, {}, {}).pose);
+  EXPECT_FALSE(relocalise({{}, mapOf(room, {{3, 2.5}})}, {{}, 1}, {}, {}).pose);
 }
 
 TEST(Relocalisation, WrongParametersAreNamed) {

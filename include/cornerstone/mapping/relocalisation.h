@@ -33,6 +33,11 @@ struct RelocalisationParams {
 void describe(ParamVisitor& visitor, RelocalisationParams& params);
 void requireValid(const RelocalisationParams& params);  // throws InputError naming the parameter
 
+struct LookOnMap {
+  const RangeScan& scan;
+  const OccupancyGrid& grid;
+};
+
 struct SearchWindow {
   Pose2 map_from_base;  // its middle: where odometry puts the robot
   double reach_m = 0;
@@ -44,7 +49,7 @@ struct Relocalisation {
   std::optional<PoseEstimate> pose;  // map_from_base by the scan fit, where the scan singles one out
   double agreeing = 0;               // of the ends, at the best pose
 };
-Relocalisation relocalise(const RangeScan& scan, const OccupancyGrid& grid, const SearchWindow& window,
-                          const ScanFitParams& fit, const RelocalisationParams& params);
+Relocalisation relocalise(const LookOnMap& look, const SearchWindow& window, const ScanFitParams& fit,
+                          const RelocalisationParams& params);
 
 }  // namespace cornerstone
