@@ -129,7 +129,9 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
     return relocalise({scan, grid()}, {by_odometry, reach_m, reach_rad}, params_.fit, params);
   };
   const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
-  const Relocalisation far = sought(params.reach_m, M_PI);
+  // No place agrees by more than 1, so that a good one nearby needs no other to be held against.
+  const bool is_best = near.pose && near.agreeing >= kAsGood;
+  const Relocalisation far = is_best ? Relocalisation{} : sought(params.reach_m, M_PI);
   if (near.pose && near.agreeing >= kAsGood * far.agreeing) {
     goOnAt(*near.pose, odom_from_base);
     return Place::kFound;
