@@ -7,6 +7,7 @@
 
 #include "bench.h"
 #include "cornerstone/base/errors.h"
+#include "cornerstone/stereo/self_calibration.h"
 
 namespace cornerstone::bench {
 namespace {
@@ -118,6 +119,7 @@ RecordedTour recordTour(const TourSetup& setup) {
   StereoParams stereo;
   stereo.max_disparity_px = maxDisparityOf(setup.width_px);
   StereoMatcher matcher(stereo);
+  SelfCalibration calibration;
   const auto peer = makeStereoBM(stereo.max_disparity_px);
   DriftingOdometry odometry(setup.seed);
   drive(tour.world, params, [&](const RobotFrame& frame) {
@@ -125,8 +127,9 @@ RecordedTour recordTour(const TourSetup& setup) {
     look.world_from_base = frame.world_from_base;
     look.odom_from_base = odometry.next(frame.world_from_base);
     look.chain_ms = elapsed_ms([&] {
-      const Disparity disparity =
-          matcher.match({frame.images[0], frame.images[1], frame.images[2]}, mounting.rig);
+      const StereoImages images{frame.images[0], frame.images[1], frame.images[2]};
+      Disparity disparity = matcher.match(images, mounting.rig);
+      calibration.correct(images, disparity);
       look.scan = scanFromDisparity(disparity, mounting.base_from_camera, {});
     });
     look.peer_chain_ms = elapsed_ms([&] {

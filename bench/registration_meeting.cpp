@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bench.h"
+#include "cornerstone/stereo/self_calibration.h"
 #include "peers.h"
 #include "tour.h"
 
@@ -23,6 +24,7 @@ struct Known {
 
 struct MappingRobot {
   StereoMatcher matcher{{}};
+  SelfCalibration calibration;
   Mapper mapper;
   Mapper guided;         // the same scans at true poses: what drift alone spoils
   Pose2 world_from_map;  // where it truly started
@@ -52,6 +54,7 @@ Robots tour(const std::string& world, int seed) {
     if (at == robots.end()) {
       at = robots
                .emplace(frame.robot, MappingRobot{StereoMatcher({}),
+                                                  {},
                                                   Mapper({}, scan_params.levels.size()),
                                                   Mapper(guidedParams(), scan_params.levels.size()),
                                                   frame.world_from_base * frame.odom_from_base.inverse(),
@@ -63,8 +66,9 @@ Robots tour(const std::string& world, int seed) {
     robot.world_from_base = frame.world_from_base;
     robot.odom_from_base = frame.odom_from_base;
     if (frame.images[0].empty()) return;
-    const Disparity disparity =
-        robot.matcher.match({frame.images[0], frame.images[1], frame.images[2]}, mounting.rig);
+    const StereoImages images{frame.images[0], frame.images[1], frame.images[2]};
+    Disparity disparity = robot.matcher.match(images, mounting.rig);
+    robot.calibration.correct(images, disparity);
     const RangeScan scan = scanFromDisparity(disparity, mounting.base_from_camera, scan_params);
     robot.mapper.update(scan, frame.odom_from_base);
     robot.guided.update(scan, robot.world_from_map.inverse() * frame.world_from_base);

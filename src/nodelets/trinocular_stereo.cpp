@@ -4,7 +4,9 @@
 #include <dynamic_reconfigure/server.h>
 #include <sensor_msgs/image_encodings.h>
 #include <algorithm>
+#include <iomanip>
 #include <pluginlib/class_list_macros.hpp>
+#include <sstream>
 #include <utility>
 
 #include "cornerstone/base/errors.h"
@@ -14,6 +16,7 @@
 #include "cornerstone/ros/stereo_reconfigure.h"
 #include "cornerstone/stereo/disparity_picture.h"
 #include "cornerstone/stereo/rig_check.h"
+#include "cornerstone/stereo/self_calibration.h"
 #include "nodelets/factories.h"
 #include "nodelets/image_sets.h"
 #include "nodelets/nodelet_start.h"
@@ -82,6 +85,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
 
   void takeCalibrations() {
     rig_check_.emplace(params_.stereo);
+    self_calibration_ = {};
     matchHeld();
   }
 
@@ -122,15 +126,32 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
         matcher_->match(images, rig, disparity_);
         rig_check_->look(images, disparity_);
         if (!rig_check_->complaint().empty()) throw InputError(rig_check_->complaint());
+        if (params_.self_calibration) calibrate(images);
         publish(images.reference, set.images[0]->header);
       }
       const bool third_is_missing = params_.third_camera && !set.images[2];
       diagnostics_->complain(third_is_missing ? cameras_->nameOf(2) + " is silent: two cameras go on alone"
-                                              : "");
+                             : self_calibration_.isAtLimit()
+                                 ? "the cameras are turned against their calibration: calibrate them again"
+                                 : "");
       diagnostics_->processed((ros::WallTime::now() - start).toSec());
     } catch (const InputError& error) {
       diagnostics_->complain(error.what());
       diagnostics_->dropped(error.what());
+    }
+  }
+
+  // And tells what was found.
+  void calibrate(const StereoImages& images) {
+    self_calibration_.correct(images, disparity_);
+    const auto &turns_px = self_calibration_.turns_px(), sigmas_px = self_calibration_.sigmas_px();
+    for (const Eigen::Index camera : {1, 2}) {
+      std::ostringstream text;
+      text << std::fixed << std::setprecision(3);
+      for (Eigen::Index i = 3 * (camera - 1); i < 3 * camera; ++i)
+        text << turns_px(i) << " +- " << sigmas_px(i) << (i % 3 < 2 ? ", " : "");
+      diagnostics_->tell(cameras_->nameOf(static_cast<std::size_t>(camera)) + " turned by px about x, y, z",
+                         text.str());
     }
   }
 
@@ -160,6 +181,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
   TrinocularStereoParams params_;
   std::optional<StereoMatcher> matcher_;
   std::optional<RigCheck> rig_check_;
+  SelfCalibration self_calibration_;
   std::optional<StageDiagnostics> diagnostics_;
   std::optional<StereoCameras> cameras_;
   std::optional<ImageSets> sets_;

@@ -8,6 +8,7 @@ void describe(ParamVisitor& visitor, TrinocularStereoParams& params) {
   visitor.field("third_camera_silence_s", params.third_camera_silence_s);
   visitor.field("sync_tolerance_s", params.sync_tolerance_s);
   visitor.field("queue_size", params.queue_size);
+  visitor.field("self_calibration", params.self_calibration);
   visitor.group("stereo", [&] { describe(visitor, params.stereo); });
 }
 

@@ -144,6 +144,7 @@ void describe(ParamVisitor& visitor, ScanParams& params) {
   visitor.degrees("tilt_sigma_deg", params.tilt_sigma_rad);
   visitor.field("correlated_px", params.correlated_px);
   visitor.field("common_sigma_px", params.common_sigma_px);
+  visitor.field("calibration_sigma_px", params.calibration_sigma_px);
   visitor.field("min_range_m", params.min_range_m);
   visitor.field("body_radius_m", params.body_radius_m);
 }
@@ -157,6 +158,7 @@ void requireValid(const ScanParams& params) {
   requireWithin(params.tilt_sigma_rad, 0, 0.2, "tilt_sigma_deg");
   requireWithin(params.correlated_px, 1, 100, "correlated_px");
   requireWithin(params.common_sigma_px, 0, 2, "common_sigma_px");
+  requireWithin(params.calibration_sigma_px, 0, 2, "calibration_sigma_px");
   requirePositive(params.min_range_m, "min_range_m");
   requireWithin(params.body_radius_m, 0, 10, "body_radius_m");
 }
@@ -212,7 +214,7 @@ RangeScan scanFromDisparity(const Disparity& disparity, const Eigen::Isometry3d&
   image.centre_x_px = rig.centre_x_px;
   image.centre_y_px = rig.centre_y_px;
   RangeScan scan = scanFromInverseDepth(image, base_from_camera, params);
-  scan.calibration_sigma_per_m = image.common_sigma;
+  scan.calibration_sigma_per_m = params.calibration_sigma_px * per_px;
   return scan;
 }
 

@@ -13,11 +13,13 @@
 #include "cornerstone/mapping/mapper.h"
 #include "cornerstone/registration/register_maps.h"
 #include "cornerstone/scan/column_scan.h"
+#include "cornerstone/stereo/self_calibration.h"
 #include "cornerstone/stereo/stereo_matcher.h"
 
 namespace cornerstone {
 
 struct PipelineParams {
+  bool self_calibration = true;
   StereoParams stereo;
   ScanParams scan;
   MapperParams mapper;
@@ -44,6 +46,7 @@ class RobotPipeline {
   StereoMounting mounting_;
   PipelineParams params_;
   StereoMatcher matcher_;
+  SelfCalibration self_calibration_;
   Mapper mapper_;
 };
 

@@ -25,6 +25,9 @@ struct TrinocularStereoParams {       // config/stereo.yaml
   // by less than a millisecond; at 1 m/s and 3 m range 10 ms already shift the image by a quarter of a pixel.
   double sync_tolerance_s = 0.0;
   int queue_size = 5;  // sets that may wait; more only delays what is shown
+  // Cameras turned against their calibration by hundredths of a degree are found out and disparities
+  // corrected.
+  bool self_calibration = true;
   StereoParams stereo;
 };
 void describe(ParamVisitor& visitor, TrinocularStereoParams& params);

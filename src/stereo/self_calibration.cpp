@@ -1,0 +1,229 @@
+#include "cornerstone/stereo/self_calibration.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace cornerstone {
+namespace {
+
+// Of each turn before anything is known: what is left of a calibration by boards.
+constexpr double kPrior_px = 0.1;
+constexpr int kPeriod_sets = 5;       // costs a tenth of a match at 160x120, less for larger images
+constexpr int kReach_px = 3;          // windows of 7 x 7
+constexpr int kWindows = 300;         // in a grid over the image, elsewhere at each look
+constexpr float kLargestStep_px = 1;  // of the disparities in a window
+// What the surfaces' own shape does to a window: its evidence is never better than this.
+constexpr double kWindowFloor_px = 0.05;
+constexpr double kLeastVariance_grey2 = 1;
+constexpr double kCorrelated_px = 7;  // that share noise after smoothing
+// Looks half a second apart see nearly the same and err alike: one of them counts as a fourth.
+constexpr double kLookShare = 0.25;
+constexpr double kKept =
+    1 - 1.0 / 1000;                // of what is known, from look to look: rigs warm up. 8 minutes at 10 Hz
+constexpr double kLargest_px = 1;  // beyond, images do not match any more
+
+using Turning = Eigen::Matrix<double, 2, 3>;
+
+// How far what is seen at an image point moves, in px, for each turn in px.
+Turning movedByTurns(const TrinocularRig& rig, const cv::Point2d& at) {
+  const double x = (at.x - rig.centre_x_px) / rig.focal_px, y = (at.y - rig.centre_y_px) / rig.focal_px;
+  Turning moved;
+  moved << x * y, -(1 + x * x), y, 1 + y * y, -x * y, -x;
+  return moved;
+}
+
+Eigen::Vector2d vectorOf(const cv::Point2d& point) { return {point.x, point.y}; }
+
+float sample(const cv::Mat1f& image, double x, double y) {
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const auto right = static_cast<float>(x - column), down = static_cast<float>(y - row);
+  const float *above = image[row] + column, *below = image[row + 1] + column;
+  return (1 - down) * ((1 - right) * above[0] + right * above[1]) +
+         down * ((1 - right) * below[0] + right * below[1]);
+}
+
+// Far enough inside for samples of the window, their gradients and the pixels between which they lie.
+bool isInside(const cv::Mat1f& image, const Eigen::Vector2d& middle) {
+  constexpr double kMargin = kReach_px + kLargestStep_px + 3;
+  return middle.x() >= kMargin && middle.y() >= kMargin && middle.x() < image.cols - kMargin &&
+         middle.y() < image.rows - kMargin;
+}
+
+bool isOneSurface(const Disparity& answer, cv::Point middle) {
+  const float middle_px = answer.disparity_px(middle);
+  for (int y = middle.y - kReach_px; y <= middle.y + kReach_px; ++y)
+    for (int x = middle.x - kReach_px; x <= middle.x + kReach_px; ++x) {
+      const float here_px = answer.disparity_px(y, x);
+      if (!(here_px > 0) || std::abs(here_px - middle_px) > kLargestStep_px) return false;
+    }
+  return true;
+}
+
+// What the turns of a camera move along its baseline: a polynomial over the image.
+class AlongBaseline {
+ public:
+  AlongBaseline(const TrinocularRig& rig, const cv::Point2d& shift, const Eigen::Vector3d& turns_px)
+      : rig_(rig),
+        shift_(shift),
+        weight_(shift.dot(shift)),
+        constant_(shift.y * turns_px.x() - shift.x * turns_px.y()),
+        x_(-shift.y * turns_px.z()),
+        y_(shift.x * turns_px.z()),
+        xx_(-shift.x * turns_px.y()),
+        yy_(shift.y * turns_px.x()),
+        xy_(shift.x * turns_px.x() - shift.y * turns_px.y()) {}
+
+  struct Share {
+    double moved = 0, weight = 0;  // moved / weight: px of disparity
+  };
+  // Nothing where the camera does not see the pixel.
+  Share of(cv::Point pixel, double disparity_px) const {
+    const double u = pixel.x + disparity_px * shift_.x, v = pixel.y + disparity_px * shift_.y;
+    if (u < 0 || v < 0 || u > rig_.image_size_px.width - 1 || v > rig_.image_size_px.height - 1) return {};
+    const double x = (u - rig_.centre_x_px) / rig_.focal_px, y = (v - rig_.centre_y_px) / rig_.focal_px;
+    return {constant_ + x * (x_ + xx_ * x + xy_ * y) + y * (y_ + yy_ * y), weight_};
+  }
+
+ private:
+  const TrinocularRig& rig_;
+  cv::Point2d shift_;
+  double weight_, constant_, x_, y_, xx_, yy_, xy_;
+};
+
+}  // namespace
+
+// A displacement (du, dv) of each view: the quadratic that the brightness differences make of it, and what it
+// is made of.
+struct SelfCalibration::Window {
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+  Eigen::Vector4d by_disparity = Eigen::Vector4d::Zero();
+  Eigen::Matrix<double, 4, 6> by_turns = Eigen::Matrix<double, 4, 6>::Zero();
+};
+
+SelfCalibration::SelfCalibration() : information_(Information::Identity() / (kPrior_px * kPrior_px)) {}
+
+SelfCalibration::Turns SelfCalibration::sigmas_px() const {
+  return information_.inverse().diagonal().cwiseSqrt();
+}
+
+void SelfCalibration::smooth(const StereoImages& images, const TrinocularRig& rig) {
+  const std::array<const cv::Mat1b*, 3> all{&images.reference, &images.right, &images.top};
+  std::array<double, 3> contrasts{};
+  view_count_ = images.top.empty() || !rig.top_shift ? 1 : 2;
+  for (std::size_t i = 0; i <= view_count_; ++i) {
+    all[i]->convertTo(grey_, CV_32F);
+    // Noise goes, and with it what is too fine for samples between pixels.
+    cv::GaussianBlur(grey_, smoothed_[i], {5, 5}, 1.0);
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(smoothed_[i], mean, deviation);
+    contrasts[i] = std::max(deviation[0], 1.0);
+  }
+  views_[0] = {&smoothed_[1], rig.right_shift, contrasts[0] / contrasts[1]};
+  if (view_count_ == 2) views_[1] = {&smoothed_[2], *rig.top_shift, contrasts[0] / contrasts[2]};
+}
+
+void SelfCalibration::sumDifferences(const Disparity& answer, cv::Point middle, Window& window) const {
+  for (std::size_t i = 0; i < view_count_; ++i) {
+    const View& view = views_[i];
+    const auto first = static_cast<Eigen::Index>(2 * i), turn = static_cast<Eigen::Index>(3 * i);
+    const cv::Point2d at = cv::Point2d(middle) + answer.disparity_px(middle) * view.shift;
+    if (!isInside(*view.image, vectorOf(at))) continue;
+    const Turning by_turns = movedByTurns(answer.rig, at);
+    const Eigen::Vector2d moved_px = by_turns * turns_px_.segment<3>(turn);
+
+    constexpr int kEdge_px = 2 * kReach_px + 1, kPixels = kEdge_px * kEdge_px;
+    std::array<Eigen::Vector3d, kPixels> pixels;  // gradient and difference
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    for (int y = middle.y - kReach_px; y <= middle.y + kReach_px; ++y)
+      for (int x = middle.x - kReach_px; x <= middle.x + kReach_px; ++x) {
+        const double d_px = answer.disparity_px(y, x);
+        const double u = x + d_px * view.shift.x + moved_px.x(), v = y + d_px * view.shift.y + moved_px.y();
+        const auto brightness = [&](double du, double dv) {
+          return view.gain * static_cast<double>(sample(*view.image, u + du, v + dv));
+        };
+        Eigen::Vector3d& pixel = pixels[count++];
+        pixel << (brightness(1, 0) - brightness(-1, 0)) / 2, (brightness(0, 1) - brightness(0, -1)) / 2,
+            static_cast<double>(smoothed_[0](y, x)) - brightness(0, 0);
+        sum += pixel;
+      }
+    const double offset = sum.z() / kPixels;  // of this camera's brightness
+    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    for (Eigen::Vector3d& pixel : pixels) {
+      pixel.z() -= offset;
+      products += pixel * pixel.transpose();
+    }
+    const double variance = kCorrelated_px * std::max(kLeastVariance_grey2, products(2, 2) / kPixels);
+    const Eigen::Matrix2d squares = products.topLeftCorner<2, 2>() / variance;
+    const Eigen::Matrix2d temper =
+        (Eigen::Matrix2d::Identity() + kWindowFloor_px * kWindowFloor_px * squares).inverse();
+    window.squares.block<2, 2>(first, first) = temper * squares;
+    window.gradient.segment<2>(first) = temper * products.topRightCorner<2, 1>() / variance;
+    window.by_disparity.segment<2>(first) = vectorOf(view.shift);
+    window.by_turns.block<2, 3>(first, turn) = by_turns;
+  }
+}
+
+// With the disparity's error eliminated.
+void SelfCalibration::addWindow(const Disparity& answer, cv::Point middle, Evidence& evidence) const {
+  if (!isOneSurface(answer, middle)) return;
+  Window window;
+  sumDifferences(answer, middle, window);
+  const Eigen::Vector4d by_disparity = window.squares * window.by_disparity;
+  const double of_disparity = window.by_disparity.dot(by_disparity);
+  constexpr double kNothing = 1e-3;  // no disparity of the window can be told better than to 30 px
+  if (of_disparity < kNothing) return;
+  const Eigen::Matrix4d squares = window.squares - by_disparity * by_disparity.transpose() / of_disparity;
+  const Eigen::Vector4d gradient =
+      window.gradient - by_disparity * (window.by_disparity.dot(window.gradient) / of_disparity);
+  evidence.squares += window.by_turns.transpose() * squares * window.by_turns;
+  evidence.gradient += window.by_turns.transpose() * gradient;
+}
+
+void SelfCalibration::look(const StereoImages& images, const Disparity& answer) {
+  smooth(images, answer.rig);
+  const cv::Size size = answer.disparity_px.size();
+  const int step = std::max(2 * kReach_px + 1, static_cast<int>(std::sqrt(size.area() / kWindows)));
+  constexpr int kAcross = 5, kDown = 3;  // from look to look, so that every place has its turn
+  const int first_x = kReach_px + looks_ * kAcross % step, first_y = kReach_px + looks_ * kDown % step;
+  looks_ = (looks_ + 1) % step;
+  Evidence evidence;
+  for (int y = first_y; y < size.height - kReach_px; y += step)
+    for (int x = first_x; x < size.width - kReach_px; x += step) addWindow(answer, {x, y}, evidence);
+
+  const Information prior = Information::Identity() / (kPrior_px * kPrior_px);
+  information_ = prior + kKept * (information_ - prior) + kLookShare * evidence.squares;
+  turns_px_ += information_.ldlt().solve(kLookShare * evidence.gradient);
+  turns_px_ = turns_px_.cwiseMax(-kLargest_px).cwiseMin(kLargest_px);
+}
+
+bool SelfCalibration::isAtLimit() const { return turns_px_.cwiseAbs().maxCoeff() >= kLargest_px; }
+
+// Cameras that see a pixel have been asked for its disparity together: it is off by their mean.
+void SelfCalibration::correct(const StereoImages& images, Disparity& answer) {
+  if (++sets_ >= kPeriod_sets) {
+    sets_ = 0;
+    look(images, answer);
+  }
+  if (turns_px_.isZero(0)) return;
+  const TrinocularRig& rig = answer.rig;
+  const AlongBaseline right(rig, rig.right_shift, turns_px_.head<3>()),
+      third(rig, rig.top_shift.value_or(cv::Point2d(0, 0)), turns_px_.tail<3>());
+  for (int y = 0; y < answer.disparity_px.rows; ++y) {
+    float* disparities_px = answer.disparity_px[y];
+    for (int x = 0; x < answer.disparity_px.cols; ++x) {
+      if (!(disparities_px[x] > 0)) continue;
+      const auto by_right = right.of({x, y}, disparities_px[x]),
+                 by_third = third.of({x, y}, disparities_px[x]);
+      const double weight = by_right.weight + by_third.weight;
+      if (weight > 0) disparities_px[x] -= static_cast<float>((by_right.moved + by_third.moved) / weight);
+      if (!(disparities_px[x] > 0)) reject(answer, {x, y}, Rejection::kRange);
+    }
+  }
+}
+
+}  // namespace cornerstone
