@@ -24,6 +24,10 @@ constexpr int kPenaltyPerGrey = 3;
 // of what waiting for each other does.
 constexpr int kRoundBytes = 1 << 22;
 
+// Where a camera's lines lie across the rows, each pixel's are in other cache lines, which all rows of a
+// stretch of columns use in turn.
+constexpr int kRowsTogether = 4, kColumnsTogether = 32;
+
 void jumpPenaltiesAt(const std::uint8_t* here, const std::uint8_t* before, int count,
                      std::uint8_t* penalties) {
   for (int x = 0; x < count; ++x) {
@@ -89,7 +93,7 @@ void CostSweep::prepareStripe(SweepStripe& stripe, const cv::Range& columns) {
   stripe.window_columns = {std::max(columns.start - radius, 0), std::min(columns.end + radius, width)};
   stripe.rows_known = 0;
   const int row_costs = stripe.window_columns.size() * disparities_ + kSlack;
-  stripe.pair_costs.create(window + round_rows_, row_costs);
+  stripe.pair_costs.create(window + round_rows_ + kRowsTogether, row_costs);
   stripe.column_sums.create(1, row_costs);
   stripe.path_sums.create(1, disparities_ + kSlack);
   stripe.entering.resize(static_cast<std::size_t>(columns.size() + window));
@@ -205,18 +209,27 @@ std::uint8_t* CostSweep::pairCostsOf(SweepStripe& stripe, int row) {
 
 void CostSweep::knowPairCosts(SweepStripe& stripe, int end_row) {
   const cv::Range& columns = stripe.window_columns;
-  for (int& row = stripe.rows_known; row < std::min(end_row, size_px_.height); ++row) {
-    PairCostRow pair;
-    for (std::size_t c = 0; c < GradientFeatures::kChannels; ++c)
-      pair.reference[c] = input_->reference->channel(c)[row] + columns.start;
-    for (std::size_t v = 0; v < input_->view_count; ++v)
-      pair.cameras[v] = input_->views[v].linesOf(row, columns, stripe.gathered[v]);
-    pair.camera_count = static_cast<int>(input_->view_count);
-    pair.unseen = unseen_costs_[row] + columns.start;
-    pair.width = columns.size();
-    pair.disparities = disparities_;
-    kernels_->pairCosts(pair, pairCostsOf(stripe, row));
+  while (stripe.rows_known < std::min(end_row, size_px_.height)) {
+    const int first_row = stripe.rows_known;
+    stripe.rows_known = std::min(first_row + kRowsTogether, size_px_.height);
+    for (int x = columns.start; x < columns.end; x += kColumnsTogether)
+      for (int row = first_row; row < stripe.rows_known; ++row)
+        pairCosts(stripe, row, {x, std::min(x + kColumnsTogether, columns.end)});
   }
+}
+
+void CostSweep::pairCosts(SweepStripe& stripe, int row, const cv::Range& columns) {
+  PairCostRow pair;
+  for (std::size_t c = 0; c < GradientFeatures::kChannels; ++c)
+    pair.reference[c] = input_->reference->channel(c)[row] + columns.start;
+  for (std::size_t v = 0; v < input_->view_count; ++v)
+    pair.cameras[v] = input_->views[v].linesOf(row, columns, stripe.gathered[v]);
+  pair.camera_count = static_cast<int>(input_->view_count);
+  pair.unseen = unseen_costs_[row] + columns.start;
+  pair.width = columns.size();
+  pair.disparities = disparities_;
+  const std::ptrdiff_t first = std::ptrdiff_t{columns.start - stripe.window_columns.start} * disparities_;
+  kernels_->pairCosts(pair, pairCostsOf(stripe, row) + first);
 }
 
 // Moves the sums over the window's rows on to `row`.

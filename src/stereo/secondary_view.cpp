@@ -45,7 +45,8 @@ void SecondaryView::prepare(const GradientFeatures& features, const cv::Point2d&
 void SecondaryView::gather(int row, const cv::Range& columns, Gathered& gathered) const {
   const int length = lineLength();
   for (std::size_t c = 0; c < lines_.size(); ++c) {
-    gathered[c].create(1, columns.size() * disparities_ + kVector_bytes);
+    const int bytes = columns.size() * disparities_ + kVector_bytes;
+    if (gathered[c].cols < bytes) gathered[c].create(1, bytes);
     std::uint8_t* out = gathered[c][0];
     for (int x = columns.start; x < columns.end; ++x) {
       const int at = vertical_ ? row : x, from = backwards_ ? length - 1 - at : at;

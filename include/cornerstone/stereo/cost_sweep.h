@@ -70,6 +70,7 @@ class CostSweep {
   void endCosts(Workers& workers);
   std::uint8_t* pairCostsOf(SweepStripe& stripe, int row);
   void knowPairCosts(SweepStripe& stripe, int end_row);
+  void pairCosts(SweepStripe& stripe, int row, const cv::Range& columns);
   void columnSums(SweepStripe& stripe, int row);
   void windowCosts(SweepStripe& stripe, int row);
   void jumpPenalties(const SweepStripe& stripe, int row);
