@@ -84,7 +84,6 @@ void CostSweep::prepareRows(int workers) {
     from_above_(0, x * (disparities_ + 2)) = from_above_(0, (x + 1) * (disparities_ + 2) - 1) = 255;
   lowest_above_.create(1, width);
   fillAll<std::uint8_t>(lowest_above_, 0);
-  path_winners_.resize(static_cast<std::size_t>(width));
 }
 
 void CostSweep::prepareStripe(SweepStripe& stripe, const cv::Range& columns) {
@@ -140,7 +139,8 @@ PathRow CostSweep::pathsOf(int row, int first_column) {
   paths.from_right = from_right_[slot] + first_path;
   paths.from_above = from_above_[0] + first_path;
   paths.lowest_above = lowest_above_[0] + first_column;
-  paths.winners = path_winners_.data() + first_column;
+  paths.winners = {winners_.disparity_px[row] + first_column, winners_.margin[row] + first_column,
+                   winners_.lead[row] + first_column};
   return paths;
 }
 
@@ -264,22 +264,17 @@ void CostSweep::keep(SweepStripe& stripe, int row) {
   const std::uint16_t* sums = sums_[row % round_rows_] + first * disparities_;
   const short *seen_by_one = input_->views[0].seenOf(row),
               *seen_by_other = input_->views[input_->view_count - 1].seenOf(row);
-  short *disparities_px = winners_.disparity_px[row], *costs = winners_.cost[row];
-  short *before = winners_.cost_before[row], *after = winners_.cost_after[row];
-  std::uint8_t *own_costs = winners_.own_cost[row], *margins = winners_.margin[row],
-               *leads = winners_.lead[row];
-  const short *nearest = nearest_[row], *farthest = farthest_[row];
+  const short *disparities_px = winners_.disparity_px[row], *nearest = nearest_[row],
+              *farthest = farthest_[row];
+  short *costs = winners_.cost[row], *before = winners_.cost_before[row], *after = winners_.cost_after[row];
+  std::uint8_t* own_costs = winners_.own_cost[row];
   for (int x = stripe.columns.start; x < stripe.columns.end; ++x, own += disparities_, sums += disparities_) {
-    const PathWinner& winner = path_winners_[static_cast<std::size_t>(x)];
-    const int i = winner.index;
+    const int i = disparities_px[x] - 1;
     const bool seen = i < std::max(seen_by_one[x], seen_by_other[x]);
-    disparities_px[x] = static_cast<short>(i + 1);
     costs[x] = seen ? static_cast<short>(sums[i]) : Winners::kNoCost;
     before[x] = i > 0 ? static_cast<short>(sums[i - 1]) : farthest[x];
     after[x] = i + 1 < disparities_ ? static_cast<short>(sums[i + 1]) : nearest[x];
     own_costs[x] = own[i];
-    margins[x] = winner.margin;
-    leads[x] = winner.lead;
   }
 }
 

@@ -95,23 +95,16 @@ void pathsAlong(const PathRow& row) {
   withVectorsOf(row.disparities, [&](auto vectors) { pathsThrough<vectors.kCount>(row); });
 }
 
-// In the first lane the lowest of one, in the second that of the other.
-inline cv::v_uint8x16 lowestOf(const Bytes& one, const Bytes& other) {
-  const Words low_bytes = cv::vx_setall_u16(255);
-  const Words a = cv::v_reinterpret_as_u16(one), b = cv::v_reinterpret_as_u16(other);
-  const Bytes even = cv::v_reinterpret_as_u8((a & low_bytes) | (b << 8));
-  const Bytes odd = cv::v_reinterpret_as_u8((a >> 8) | (b & ~low_bytes));
-  return lowestOfPairs(cv::v_min(even, odd));
-}
-
-inline int firstTwoOf(const cv::v_uint8x16& values) { return cv::v_reinterpret_as_u16(values).get0(); }
-
 inline int indexOf(const Bytes& wanted, const std::uint8_t* values) {
   int i = 0;
   Bytes found = cv::vx_load(values) == wanted;
   while (!cv::v_check_any(found)) found = cv::vx_load(values + (i += kLanes)) == wanted;
   return i + cv::v_scan_forward(found);
 }
+
+struct PathWinner {
+  int index, margin, lead;
+};
 
 // `steps` count up from 2; `lowest`, in every lane, is among the sums.
 inline PathWinner winnerOf(const PathRow& row, const std::uint8_t* costs, const Bytes& lowest,
@@ -130,10 +123,8 @@ inline PathWinner winnerOf(const PathRow& row, const std::uint8_t* costs, const 
     second = cv::v_min(second, sum);
     rival = cv::v_min(rival, cost);
   }
-  const int others = firstTwoOf(lowestOf(second, rival));
-  const int margin = (others & 255) - row.sums[index], lead = (others >> 8) - costs[index];
-  return {static_cast<short>(index), static_cast<std::uint8_t>(margin),
-          static_cast<std::uint8_t>(lead > 0 ? lead : 0)};
+  const int lead = lowestOf(rival) - costs[index];
+  return {index, lowestOf(second) - row.sums[index], lead > 0 ? lead : 0};
 }
 
 template <int kVectors>
@@ -159,9 +150,11 @@ void pathOneDown(const PathRow& given) {
       cv::v_store(row.sums + i, sum);
       lowest_sum = cv::v_min(lowest_sum, sum);
     }
-    const cv::v_uint8x16 found = lowestOf(lowest, lowest_sum);
-    row.lowest_above[x] = found.get0();
-    row.winners[x] = winnerOf(row, costs, firstEverywhere(cv::v_rotate_right<1>(found)), steps);
+    row.lowest_above[x] = static_cast<std::uint8_t>(lowestOf(lowest));
+    const PathWinner winner = winnerOf(row, costs, lowestEverywhere(lowest_sum), steps);
+    row.winners.disparities_px[x] = static_cast<short>(winner.index + 1);
+    row.winners.margins[x] = static_cast<std::uint8_t>(winner.margin);
+    row.winners.leads[x] = static_cast<std::uint8_t>(winner.lead);
   }
 }
 
