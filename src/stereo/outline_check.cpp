@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "cornerstone/stereo/marks.h"
+
 namespace cornerstone {
 namespace {
 
@@ -93,15 +95,15 @@ const std::uint8_t* OutlineCheck::endsOf(const Ends& in, int y) const {
 void OutlineCheck::checkRow(const Ends& in, int y) const {
   const int margin = marginFor(window_radius_px_);
   const std::uint8_t* ends = endsOf(in, y);
-  for (int x = margin; x < before_.cols - margin; ++x) {
-    if (ends[x] == 0) continue;
+  forEachMarked(ends + margin, before_.cols - 2 * margin, [&](int from_margin) {
+    const int x = margin + from_margin;
     const int own_px = in.winners.disparity_px(y, x);
     for (const cv::Point outward : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
       const cv::Point next = cv::Point(x, y) + outward;
       if (before_(next) == 0 && std::abs(own_px - in.winners.disparity_px(next)) <= kStep_px) continue;
       checkSide(in, {x, y}, outward);
     }
-  }
+  });
 }
 
 void OutlineCheck::check(const Winners& winners, const SweepInput& input, Workers& workers,
