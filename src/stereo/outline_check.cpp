@@ -83,9 +83,10 @@ void OutlineCheck::checkSide(const Ends& in, cv::Point at, cv::Point outward) co
 const std::uint8_t* OutlineCheck::endsOf(const Ends& in, int y) const {
   const std::uint8_t *here = before_[y], *above = before_[y - 1], *below = before_[y + 1];
   const std::uint8_t* steps = in.found.steps.of(in.winners.disparity_px, y, 1);
-  in.found.ends.resize(static_cast<std::size_t>(before_.cols));
+  const int width = before_.cols;  // no store can change it
+  in.found.ends.resize(static_cast<std::size_t>(width));
   std::uint8_t* ends = in.found.ends.data();
-  for (int x = 1; x < before_.cols - 1; ++x) {
+  for (int x = 1; x < width - 1; ++x) {
     const int beside = here[x - 1] | here[x + 1] | above[x] | below[x] | steps[x];
     ends[x] = static_cast<std::uint8_t>(static_cast<int>(beside != 0) & static_cast<int>(here[x] == 0));
   }

@@ -148,8 +148,7 @@ void Validator::checkOwnCosts(const ValidationInput& input, double largest_share
       const short* costs = own_costs_[y];
       std::uint8_t* rejections = rejection[y];
       for (int x = 0; x < rejection.cols; ++x)
-        rejections[x] =
-            rejections[x] == 0 && costs[x] > largest ? codeOf(Rejection::kTexture) : rejections[x];
+        if (costs[x] > largest && rejections[x] == 0) rejections[x] = codeOf(Rejection::kTexture);
     }
   });
 }
