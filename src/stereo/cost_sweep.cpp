@@ -24,6 +24,10 @@ constexpr int kPenaltyPerGrey = 3;
 // of what waiting for each other does.
 constexpr int kRoundBytes = 1 << 22;
 
+// Where a camera's lines lie across the rows, each pixel's are in other cache lines, which all rows of a
+// stretch of columns use in turn.
+constexpr int kRowsTogether = 4, kColumnsTogether = 32;
+
 void jumpPenaltiesAt(const std::uint8_t* here, const std::uint8_t* before, int count,
                      std::uint8_t* penalties) {
   for (int x = 0; x < count; ++x) {
@@ -80,7 +84,6 @@ void CostSweep::prepareRows(int workers) {
     from_above_(0, x * (disparities_ + 2)) = from_above_(0, (x + 1) * (disparities_ + 2) - 1) = 255;
   lowest_above_.create(1, width);
   fillAll<std::uint8_t>(lowest_above_, 0);
-  path_winners_.resize(static_cast<std::size_t>(width));
 }
 
 void CostSweep::prepareStripe(SweepStripe& stripe, const cv::Range& columns) {
@@ -89,7 +92,7 @@ void CostSweep::prepareStripe(SweepStripe& stripe, const cv::Range& columns) {
   stripe.window_columns = {std::max(columns.start - radius, 0), std::min(columns.end + radius, width)};
   stripe.rows_known = 0;
   const int row_costs = stripe.window_columns.size() * disparities_ + kSlack;
-  stripe.pair_costs.create(window + round_rows_, row_costs);
+  stripe.pair_costs.create(window + round_rows_ + kRowsTogether, row_costs);
   stripe.column_sums.create(1, row_costs);
   stripe.path_sums.create(1, disparities_ + kSlack);
   stripe.entering.resize(static_cast<std::size_t>(columns.size() + window));
@@ -136,7 +139,8 @@ PathRow CostSweep::pathsOf(int row, int first_column) {
   paths.from_right = from_right_[slot] + first_path;
   paths.from_above = from_above_[0] + first_path;
   paths.lowest_above = lowest_above_[0] + first_column;
-  paths.winners = path_winners_.data() + first_column;
+  paths.winners = {winners_.disparity_px[row] + first_column, winners_.margin[row] + first_column,
+                   winners_.lead[row] + first_column};
   return paths;
 }
 
@@ -205,18 +209,27 @@ std::uint8_t* CostSweep::pairCostsOf(SweepStripe& stripe, int row) {
 
 void CostSweep::knowPairCosts(SweepStripe& stripe, int end_row) {
   const cv::Range& columns = stripe.window_columns;
-  for (int& row = stripe.rows_known; row < std::min(end_row, size_px_.height); ++row) {
-    PairCostRow pair;
-    for (std::size_t c = 0; c < GradientFeatures::kChannels; ++c)
-      pair.reference[c] = input_->reference->channel(c)[row] + columns.start;
-    for (std::size_t v = 0; v < input_->view_count; ++v)
-      pair.cameras[v] = input_->views[v].linesOf(row, columns, stripe.gathered[v]);
-    pair.camera_count = static_cast<int>(input_->view_count);
-    pair.unseen = unseen_costs_[row] + columns.start;
-    pair.width = columns.size();
-    pair.disparities = disparities_;
-    kernels_->pairCosts(pair, pairCostsOf(stripe, row));
+  while (stripe.rows_known < std::min(end_row, size_px_.height)) {
+    const int first_row = stripe.rows_known;
+    stripe.rows_known = std::min(first_row + kRowsTogether, size_px_.height);
+    for (int x = columns.start; x < columns.end; x += kColumnsTogether)
+      for (int row = first_row; row < stripe.rows_known; ++row)
+        pairCosts(stripe, row, {x, std::min(x + kColumnsTogether, columns.end)});
   }
+}
+
+void CostSweep::pairCosts(SweepStripe& stripe, int row, const cv::Range& columns) {
+  PairCostRow pair;
+  for (std::size_t c = 0; c < GradientFeatures::kChannels; ++c)
+    pair.reference[c] = input_->reference->channel(c)[row] + columns.start;
+  for (std::size_t v = 0; v < input_->view_count; ++v)
+    pair.cameras[v] = input_->views[v].linesOf(row, columns, stripe.gathered[v]);
+  pair.camera_count = static_cast<int>(input_->view_count);
+  pair.unseen = unseen_costs_[row] + columns.start;
+  pair.width = columns.size();
+  pair.disparities = disparities_;
+  const std::ptrdiff_t first = std::ptrdiff_t{columns.start - stripe.window_columns.start} * disparities_;
+  kernels_->pairCosts(pair, pairCostsOf(stripe, row) + first);
 }
 
 // Moves the sums over the window's rows on to `row`.
@@ -251,22 +264,17 @@ void CostSweep::keep(SweepStripe& stripe, int row) {
   const std::uint16_t* sums = sums_[row % round_rows_] + first * disparities_;
   const short *seen_by_one = input_->views[0].seenOf(row),
               *seen_by_other = input_->views[input_->view_count - 1].seenOf(row);
-  short *disparities_px = winners_.disparity_px[row], *costs = winners_.cost[row];
-  short *before = winners_.cost_before[row], *after = winners_.cost_after[row];
-  std::uint8_t *own_costs = winners_.own_cost[row], *margins = winners_.margin[row],
-               *leads = winners_.lead[row];
-  const short *nearest = nearest_[row], *farthest = farthest_[row];
+  const short *disparities_px = winners_.disparity_px[row], *nearest = nearest_[row],
+              *farthest = farthest_[row];
+  short *costs = winners_.cost[row], *before = winners_.cost_before[row], *after = winners_.cost_after[row];
+  std::uint8_t* own_costs = winners_.own_cost[row];
   for (int x = stripe.columns.start; x < stripe.columns.end; ++x, own += disparities_, sums += disparities_) {
-    const PathWinner& winner = path_winners_[static_cast<std::size_t>(x)];
-    const int i = winner.index;
+    const int i = disparities_px[x] - 1;
     const bool seen = i < std::max(seen_by_one[x], seen_by_other[x]);
-    disparities_px[x] = static_cast<short>(i + 1);
     costs[x] = seen ? static_cast<short>(sums[i]) : Winners::kNoCost;
     before[x] = i > 0 ? static_cast<short>(sums[i - 1]) : farthest[x];
     after[x] = i + 1 < disparities_ ? static_cast<short>(sums[i + 1]) : nearest[x];
     own_costs[x] = own[i];
-    margins[x] = winner.margin;
-    leads[x] = winner.lead;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "cornerstone/stereo/disparity.h"
+#include "cornerstone/stereo/marks.h"
 #include "cornerstone/stereo/pixel_cost.h"
 #include "cornerstone/stereo/validation.h"
 
@@ -46,12 +47,12 @@ void EdgeCheck::check(const Winners& winners, const SweepInput& input, const How
     WinnerSteps& steps = steps_[static_cast<std::size_t>(worker)];
     for (int y = begin; y < end; ++y) {
       const std::uint8_t *beside_edge = steps.of(winners.disparity_px, y, reach_px), *before = before_[y];
-      for (int x = 0; x < rejection.cols; ++x) {
-        if (beside_edge[x] == 0 || before[x] != 0) continue;
+      forEachMarked(beside_edge, rejection.cols, [&](int x) {
+        if (before[x] != 0) return;
         const bool strong = how.evidence(y, x) == static_cast<std::uint8_t>(Evidence::kStrong);
         if (!standsOut(winners, input, {x, y}, strong ? kStrongCostRatio : how.smallest_cost_ratio))
           rejection(y, x) = static_cast<std::uint8_t>(Rejection::kUniqueness);
-      }
+      });
     }
   });
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "cornerstone/stereo/marks.h"
 #include "cornerstone/stereo/pixel_cost.h"
 
 namespace cornerstone {
@@ -14,22 +14,6 @@ constexpr int kStep_px = 1;  // a winner that differs by no more is of the same 
 bool mayHold(std::uint8_t rejection) {
   return rejection != static_cast<std::uint8_t>(Rejection::kOutside) &&
          rejection != static_cast<std::uint8_t>(Rejection::kRange);
-}
-
-// Calls for each marked pixel of a row. Most are not: they are passed eight at a time.
-template <typename Action>
-void forEachMarked(const std::uint8_t* marks, int count, const Action& action) {
-  constexpr int kTogether = 8;
-  int x = 0;
-  for (; x + kTogether <= count; x += kTogether) {
-    std::uint64_t together = 0;
-    std::memcpy(&together, marks + x, kTogether);
-    if (together == 0) continue;
-    for (int i = x; i < x + kTogether; ++i)
-      if (marks[i] != 0) action(i);
-  }
-  for (; x < count; ++x)
-    if (marks[x] != 0) action(x);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "cornerstone/stereo/marks.h"
+
 namespace cornerstone {
 namespace {
 
@@ -81,9 +83,10 @@ void OutlineCheck::checkSide(const Ends& in, cv::Point at, cv::Point outward) co
 const std::uint8_t* OutlineCheck::endsOf(const Ends& in, int y) const {
   const std::uint8_t *here = before_[y], *above = before_[y - 1], *below = before_[y + 1];
   const std::uint8_t* steps = in.found.steps.of(in.winners.disparity_px, y, 1);
-  in.found.ends.resize(static_cast<std::size_t>(before_.cols));
+  const int width = before_.cols;  // no store can change it
+  in.found.ends.resize(static_cast<std::size_t>(width));
   std::uint8_t* ends = in.found.ends.data();
-  for (int x = 1; x < before_.cols - 1; ++x) {
+  for (int x = 1; x < width - 1; ++x) {
     const int beside = here[x - 1] | here[x + 1] | above[x] | below[x] | steps[x];
     ends[x] = static_cast<std::uint8_t>(static_cast<int>(beside != 0) & static_cast<int>(here[x] == 0));
   }
@@ -93,15 +96,15 @@ const std::uint8_t* OutlineCheck::endsOf(const Ends& in, int y) const {
 void OutlineCheck::checkRow(const Ends& in, int y) const {
   const int margin = marginFor(window_radius_px_);
   const std::uint8_t* ends = endsOf(in, y);
-  for (int x = margin; x < before_.cols - margin; ++x) {
-    if (ends[x] == 0) continue;
+  forEachMarked(ends + margin, before_.cols - 2 * margin, [&](int from_margin) {
+    const int x = margin + from_margin;
     const int own_px = in.winners.disparity_px(y, x);
     for (const cv::Point outward : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
       const cv::Point next = cv::Point(x, y) + outward;
       if (before_(next) == 0 && std::abs(own_px - in.winners.disparity_px(next)) <= kStep_px) continue;
       checkSide(in, {x, y}, outward);
     }
-  }
+  });
 }
 
 void OutlineCheck::check(const Winners& winners, const SweepInput& input, Workers& workers,

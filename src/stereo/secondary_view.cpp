@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace cornerstone {
 namespace {
 
 constexpr int kVector_bytes = 64;  // kernels read whole vectors
+
+// std::reverse_copy and cv::flip go byte by byte.
+void reverseRow(const std::uint8_t* from, int count, std::uint8_t* to) {
+  constexpr int kTogether = 8;
+  int x = 0;
+  for (; x + kTogether <= count; x += kTogether) {
+    std::uint64_t together = 0;
+    std::memcpy(&together, from + x, kTogether);
+    together = __builtin_bswap64(together);
+    std::memcpy(to + count - kTogether - x, &together, kTogether);
+  }
+  std::reverse_copy(from + x, from + count, to);
+}
 
 }  // namespace
 
@@ -37,7 +51,11 @@ void SecondaryView::prepare(const GradientFeatures& features, const cv::Point2d&
       cv::transpose(*along, turned_);
       along = &turned_;
     }
-    backwards_ ? cv::flip(*along, ordered, 1) : along->copyTo(ordered);
+    for (int line = 0; line < image.height; ++line)
+      if (backwards_)
+        reverseRow((*along)[line], image.width, ordered[line]);
+      else
+        std::copy_n((*along)[line], image.width, ordered[line]);
   }
 }
 
@@ -45,7 +63,8 @@ void SecondaryView::prepare(const GradientFeatures& features, const cv::Point2d&
 void SecondaryView::gather(int row, const cv::Range& columns, Gathered& gathered) const {
   const int length = lineLength();
   for (std::size_t c = 0; c < lines_.size(); ++c) {
-    gathered[c].create(1, columns.size() * disparities_ + kVector_bytes);
+    const int bytes = columns.size() * disparities_ + kVector_bytes;
+    if (gathered[c].cols < bytes) gathered[c].create(1, bytes);
     std::uint8_t* out = gathered[c][0];
     for (int x = columns.start; x < columns.end; ++x) {
       const int at = vertical_ ? row : x, from = backwards_ ? length - 1 - at : at;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cornerstone/base/errors.h"
+#include "cornerstone/stereo/marks.h"
 
 namespace cornerstone {
 namespace {
@@ -120,9 +121,11 @@ void StereoMatcher::refine(Disparity& disparity) {
       {supportFor(disparity.rejection.cols)}, disparity.disparity_px, disparity.sigma_px);
   const auto largest_sigma = static_cast<float>(params_.largest_sigma_px);
   workers_->share(disparity.rejection.rows, [&](int begin, int end) {
-    for (int y = begin; y < end; ++y)
+    for (int y = begin; y < end; ++y) {
+      const float* sigmas_px = disparity.sigma_px[y];
       for (int x = 0; x < disparity.rejection.cols; ++x)
-        if (disparity.sigma_px(y, x) > largest_sigma) reject(disparity, {x, y}, Rejection::kTexture);
+        if (sigmas_px[x] > largest_sigma) reject(disparity, {x, y}, Rejection::kTexture);
+    }
   });
 }
 
@@ -140,15 +143,14 @@ void StereoMatcher::dropSmallSurfaces(Disparity& disparity) {
   surfaces_.judge(disparity.disparity_px, validator_.evidence(), params, verdicts_);
   for (int y = 0; y < verdicts_.rows; ++y) {
     const std::uint8_t *verdicts = verdicts_[y], *evidence = validator_.evidence()[y];
-    for (int x = 0; x < verdicts_.cols; ++x) {
-      if (verdicts[x] == SurfaceFilter::kGood) continue;
+    forEachMarked(verdicts, verdicts_.cols, [&](int x) {
       const bool flat = evidence[x] == static_cast<std::uint8_t>(Evidence::kFlat);
       const bool small = verdicts[x] == SurfaceFilter::kSmall;
       reject(disparity, {x, y},
              flat    ? Rejection::kTexture
              : small ? Rejection::kSurface
                      : Rejection::kUniqueness);
-    }
+    });
   }
 }
 

@@ -120,8 +120,9 @@ void SubpixelRefiner::writeRow(int y, const std::uint8_t* rejections, float* dis
   const float *means = means_.rowOf(means_.values_px, y), *sigmas = lines_.rowOf(lines_.values_px, y);
   const int width = means_.width();
   for (int x = 0; x < width; ++x) {
-    disparities_px[x] = rejections[x] == 0 ? means[x] : 0;
-    sigmas_px[x] = rejections[x] == 0 ? sigmas[x] : 0;
+    const float mean_px = means[x], sigma_px = sigmas[x];  // read always, so that vectors can be
+    disparities_px[x] = rejections[x] == 0 ? mean_px : 0;
+    sigmas_px[x] = rejections[x] == 0 ? sigma_px : 0;
   }
 }
 

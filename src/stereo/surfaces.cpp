@@ -20,44 +20,55 @@ int SurfaceFilter::rootOf(int surface) {
   return surface;
 }
 
-void SurfaceFilter::join(int one, int other) {
+int SurfaceFilter::join(int one, int other) {
   const int first = rootOf(one), second = rootOf(other);
   const auto [kept, given_up] = std::minmax(first, second);
-  if (kept == given_up) return;
+  if (kept == given_up) return kept;
   Surface &into = surfaces_[static_cast<std::size_t>(kept)],
           &from = surfaces_[static_cast<std::size_t>(given_up)];
   from.parent = kept;
   into.pixels += from.pixels;
   into.strong += from.strong;
+  return kept;
+}
+
+int SurfaceFilter::surfaceOf(const Run& run, float step_px) {
+  int surface = kNone, joined = kNone;
+  for (int x = run.begin; x < run.end; ++x) {
+    const int above = run.labels_above[x];
+    if (above == joined || above == kNone || std::abs(run.here[x] - run.above[x]) > step_px) continue;
+    joined = above;
+    surface = surface == kNone ? rootOf(above) : join(surface, above);
+  }
+  if (surface != kNone) return surface;
+  surface = static_cast<int>(surfaces_.size());
+  surfaces_.push_back({surface, 0, 0});
+  return surface;
 }
 
 void SurfaceFilter::label(const cv::Mat1f& disparity_px, const cv::Mat1b& evidence, float step_px) {
+  const int width = disparity_px.cols;
   labels_.create(disparity_px.size());
+  nothing_above_.assign(static_cast<std::size_t>(width), kNone);
   surfaces_.clear();
   for (int y = 0; y < disparity_px.rows; ++y) {
-    const float *here = disparity_px[y], *above = disparity_px[std::max(y - 1, 0)];
-    const std::uint8_t* evidence_here = evidence[y];
-    int *labels = labels_[y], *labels_above = labels_[std::max(y - 1, 0)];
-    int run = kNone;  // surface of the pixel to the left
-    for (int x = 0; x < disparity_px.cols; ++x) {
-      if (!(here[x] > 0)) {
-        labels[x] = run = kNone;
+    const float* here = disparity_px[y];
+    int* labels = labels_[y];
+    Run run{here, disparity_px[std::max(y - 1, 0)], y > 0 ? labels_[y - 1] : nothing_above_.data()};
+    for (; run.begin < width; run.begin = run.end) {
+      run.end = run.begin + 1;
+      if (!(here[run.begin] > 0)) {
+        labels[run.begin] = kNone;
         continue;
       }
-      if (run == kNone || std::abs(here[x] - here[x - 1]) > step_px) run = kNone;
-      const bool joins_above = y > 0 && above[x] > 0 && std::abs(here[x] - above[x]) <= step_px;
-      if (joins_above && run == kNone) run = rootOf(labels_above[x]);
-      if (run == kNone) {
-        run = static_cast<int>(surfaces_.size());
-        surfaces_.push_back({run, 0, 0});
-      } else if (joins_above && labels_above[x] != run) {
-        join(run, labels_above[x]);
-        run = rootOf(run);
-      }
-      labels[x] = run;
-      Surface& surface = surfaces_[static_cast<std::size_t>(run)];
-      ++surface.pixels;
-      surface.strong += evidence_here[x] == static_cast<std::uint8_t>(Evidence::kStrong);
+      while (run.end < width && here[run.end] > 0 && std::abs(here[run.end] - here[run.end - 1]) <= step_px)
+        ++run.end;
+      const int found = surfaceOf(run, step_px);
+      std::fill(labels + run.begin, labels + run.end, found);
+      Surface& surface = surfaces_[static_cast<std::size_t>(found)];
+      surface.pixels += run.end - run.begin;
+      surface.strong += static_cast<int>(std::count(evidence[y] + run.begin, evidence[y] + run.end,
+                                                    static_cast<std::uint8_t>(Evidence::kStrong)));
     }
   }
 }

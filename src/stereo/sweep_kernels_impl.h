@@ -67,16 +67,7 @@ void pairCostsOfRow(const PairCostRow& given, std::uint8_t* costs) {
 }
 
 void pairCosts(const PairCostRow& row, std::uint8_t* costs) {
-  switch (row.disparities / kLanes) {
-    case 1:
-      return pairCostsOfRow<1>(row, costs);
-    case 2:
-      return pairCostsOfRow<2>(row, costs);
-    case 3:
-      return pairCostsOfRow<3>(row, costs);
-    default:
-      return pairCostsOfRow<0>(row, costs);
-  }
+  withVectorsOf(row.disparities, [&](auto vectors) { pairCostsOfRow<vectors.kCount>(row, costs); });
 }
 
 void slide(std::uint16_t* sums, const std::uint8_t* entering, const std::uint8_t* leaving, int count) {
@@ -105,21 +96,36 @@ inline void slideWindow(const WindowRow& row, int x, std::uint16_t* sums) {
                                          cv::vx_load(leaving + i)));
 }
 
-void windowCosts(const WindowRow& given, std::uint16_t* sums, std::uint8_t* costs) {
-  const WindowRow row = given;  // no store can change it
-  const Words scale = cv::vx_setall_u16(static_cast<std::uint16_t>(row.scale));
-  for (int x = 0; x < row.width; ++x, sums += row.disparities, costs += row.disparities) {
-    x == 0 ? firstWindow(row, sums) : slideWindow(row, x, sums);
-    Bytes lowest = bytesOf(255);
-    for (int i = 0; i < row.disparities; i += kLanes) {
-      const Bytes cost = cv::v_pack(cv::v_mul_hi(cv::vx_load(sums + i), scale),
-                                    cv::v_mul_hi(cv::vx_load(sums + i + kHalf), scale));
-      lowest = cv::v_min(lowest, cost);
-      cv::v_store(costs + i, cost);
-    }
-    lowest = bytesOf(cv::v_reduce_min(lowest));
-    for (int i = 0; i < row.disparities; i += kLanes) cv::v_store(costs + i, cv::vx_load(costs + i) - lowest);
+inline void costsOfWindow(const std::uint16_t* sums, int disparities, const Words& scale,
+                          std::uint8_t* costs) {
+  Bytes lowest = bytesOf(255);
+  for (int i = 0; i < disparities; i += kLanes) {
+    const Bytes cost = cv::v_pack(cv::v_mul_hi(cv::vx_load(sums + i), scale),
+                                  cv::v_mul_hi(cv::vx_load(sums + i + kHalf), scale));
+    lowest = cv::v_min(lowest, cost);
+    cv::v_store(costs + i, cost);
   }
+  lowest = lowestEverywhere(lowest);
+  for (int i = 0; i < disparities; i += kLanes) cv::v_store(costs + i, cv::vx_load(costs + i) - lowest);
+}
+
+template <int kVectors>
+void windowCostsOfRow(const WindowRow& given, std::uint16_t* sums, std::uint8_t* costs) {
+  WindowRow row = given;  // no store can change it
+  if (kVectors > 0) row.disparities = kVectors * kLanes;
+  const Words scale = cv::vx_setall_u16(static_cast<std::uint16_t>(row.scale));
+  firstWindow(row, sums);
+  costsOfWindow(sums, row.disparities, scale, costs);
+  for (int x = 1; x < row.width; ++x) {
+    sums += row.disparities;
+    costs += row.disparities;
+    slideWindow(row, x, sums);
+    costsOfWindow(sums, row.disparities, scale, costs);
+  }
+}
+
+void windowCosts(const WindowRow& row, std::uint16_t* sums, std::uint8_t* costs) {
+  withVectorsOf(row.disparities, [&](auto vectors) { windowCostsOfRow<vectors.kCount>(row, sums, costs); });
 }
 
 inline cv::v_int32 squashed(const cv::v_int32& difference, const cv::v_float32& noise) {

@@ -12,9 +12,9 @@ namespace {
 //   L(i) = C(i) + min(p(i), p(i - 1) + P1, p(i + 1) + P1, min p + P2) - min p
 class PathStep {
  public:
-  PathStep(int lowest_before, int jump_penalty, const Bytes& slope_penalty)
-      : lowest_before_(bytesOf(lowest_before)),
-        limit_(bytesOf(lowest_before) + bytesOf(jump_penalty)),
+  PathStep(const Bytes& lowest_before, int jump_penalty, const Bytes& slope_penalty)
+      : lowest_before_(lowest_before),
+        limit_(lowest_before + bytesOf(jump_penalty)),
         slope_penalty_(slope_penalty) {}
   Bytes operator()(const Bytes& below, const Bytes& here, const Bytes& above, const Bytes& cost) const {
     const Bytes beside = cv::v_min(below, above) + slope_penalty_;
@@ -33,7 +33,7 @@ class Path {
       : row_(row), slope_penalty_(bytesOf(row.slope_penalty)), here_(here) {
     for (Bytes& few : few_) few = bytesOf(0);
     // Nothing before the first pixel: its own costs.
-    lowest_ = take(PathStep(0, 0, slope_penalty_), first, here);
+    lowest_ = take(PathStep(bytesOf(0), 0, slope_penalty_), first, here);
   }
   // On to a neighbouring column, whose costs are to be written `by` further.
   void go(int column, int jump_penalty, std::ptrdiff_t by) {
@@ -42,7 +42,7 @@ class Path {
   }
 
  private:
-  int take(const PathStep& step, int column, std::uint8_t* out) {
+  Bytes take(const PathStep& step, int column, std::uint8_t* out) {
     if constexpr (kVectors > 0) return takeFew(step, column, out);
     const std::uint8_t* costs = row_.costs + static_cast<std::ptrdiff_t>(column) * row_.disparities;
     Bytes lowest = bytesOf(255);
@@ -53,9 +53,9 @@ class Path {
       lowest = cv::v_min(lowest, sum);
     }
     out[-1] = out[row_.disparities] = 255;
-    return cv::v_reduce_min(lowest);
+    return lowestEverywhere(lowest);
   }
-  int takeFew(const PathStep& step, int column, std::uint8_t* out) {
+  Bytes takeFew(const PathStep& step, int column, std::uint8_t* out) {
     const std::uint8_t* costs = row_.costs + static_cast<std::ptrdiff_t>(column) * kVectors * kLanes;
     const Bytes none = bytesOf(255);
     Bytes lowest = none, last = none;
@@ -67,14 +67,14 @@ class Path {
       cv::v_store(out + k * kLanes, few_[k]);
       lowest = cv::v_min(lowest, few_[k]);
     }
-    return cv::v_reduce_min(lowest);
+    return lowestEverywhere(lowest);
   }
 
   const PathRow& row_;
   const Bytes slope_penalty_;
   std::uint8_t* here_;
   Bytes few_[kVectors > 0 ? kVectors : 1];  // the same as here_, if few
-  int lowest_ = 0;
+  Bytes lowest_;
 };
 
 // Both paths together: each waits for its own last pixel.
@@ -92,45 +92,23 @@ void pathsThrough(const PathRow& given) {
 }
 
 void pathsAlong(const PathRow& row) {
-  switch (row.disparities / kLanes) {
-    case 1:
-      return pathsThrough<1>(row);
-    case 2:
-      return pathsThrough<2>(row);
-    case 3:
-      return pathsThrough<3>(row);
-    default:
-      return pathsThrough<0>(row);
-  }
+  withVectorsOf(row.disparities, [&](auto vectors) { pathsThrough<vectors.kCount>(row); });
 }
 
-struct LowestOfTwo {
-  int one, other;
-};
-
-// Both minima by one reduction, the two interleaved.
-inline LowestOfTwo lowestOf(const Bytes& one, const Bytes& other) {
-  Bytes low, high;
-  cv::v_zip(one, other, low, high);
-  Bytes lowest = cv::v_min(low, high);
-  if (kLanes >= 32) lowest = cv::v_min(lowest, cv::v_rotate_right<kLanes / 2>(lowest));
-  lowest = cv::v_min(lowest, cv::v_rotate_right<8>(lowest));
-  lowest = cv::v_min(lowest, cv::v_rotate_right<4>(lowest));
-  lowest = cv::v_min(lowest, cv::v_rotate_right<2>(lowest));
-  const int both = cv::v_reinterpret_as_u16(lowest).get0();
-  return {both & 255, both >> 8};
-}
-
-inline int indexOf(int value, const std::uint8_t* values) {
-  const Bytes wanted = bytesOf(value);
+inline int indexOf(const Bytes& wanted, const std::uint8_t* values) {
   int i = 0;
   Bytes found = cv::vx_load(values) == wanted;
   while (!cv::v_check_any(found)) found = cv::vx_load(values + (i += kLanes)) == wanted;
   return i + cv::v_scan_forward(found);
 }
 
-// `steps` count up from 2; `lowest` is among the sums.
-inline PathWinner winnerOf(const PathRow& row, const std::uint8_t* costs, int lowest, const Bytes& steps) {
+struct PathWinner {
+  int index, margin, lead;
+};
+
+// `steps` count up from 2; `lowest`, in every lane, is among the sums.
+inline PathWinner winnerOf(const PathRow& row, const std::uint8_t* costs, const Bytes& lowest,
+                           const Bytes& steps) {
   const int index = indexOf(lowest, row.sums);
   const Bytes one = bytesOf(1);
   Bytes second = bytesOf(255), rival = second;
@@ -145,10 +123,8 @@ inline PathWinner winnerOf(const PathRow& row, const std::uint8_t* costs, int lo
     second = cv::v_min(second, sum);
     rival = cv::v_min(rival, cost);
   }
-  const LowestOfTwo others = lowestOf(second, rival);
-  const int margin = others.one - lowest, lead = others.other - costs[index];
-  return {static_cast<short>(index), static_cast<std::uint8_t>(margin),
-          static_cast<std::uint8_t>(lead > 0 ? lead : 0)};
+  const int lead = lowestOf(rival) - costs[index];
+  return {index, lowestOf(second) - row.sums[index], lead > 0 ? lead : 0};
 }
 
 template <int kVectors>
@@ -161,7 +137,7 @@ void pathOneDown(const PathRow& given) {
   const std::uint8_t *costs = row.costs, *left = row.from_left + 1, *right = row.from_right + 1;
   std::uint8_t* down = row.from_above + 1;
   for (int x = 0; x < row.width; ++x, costs += n, left += stride, right += stride, down += stride) {
-    const PathStep step(row.lowest_above[x], row.jump_down[x], slope_penalty);
+    const PathStep step(bytesOf(row.lowest_above[x]), row.jump_down[x], slope_penalty);
     Bytes lowest = bytesOf(255), lowest_sum = lowest, below = cv::vx_load(down - 1);
     for (int i = 0; i < n; i += kLanes) {
       const Bytes next_below = cv::vx_load(down + i + kLanes - 1);  // before it is overwritten
@@ -174,23 +150,16 @@ void pathOneDown(const PathRow& given) {
       cv::v_store(row.sums + i, sum);
       lowest_sum = cv::v_min(lowest_sum, sum);
     }
-    const LowestOfTwo found = lowestOf(lowest, lowest_sum);
-    row.lowest_above[x] = static_cast<std::uint8_t>(found.one);
-    row.winners[x] = winnerOf(row, costs, found.other, steps);
+    row.lowest_above[x] = static_cast<std::uint8_t>(lowestOf(lowest));
+    const PathWinner winner = winnerOf(row, costs, lowestEverywhere(lowest_sum), steps);
+    row.winners.disparities_px[x] = static_cast<short>(winner.index + 1);
+    row.winners.margins[x] = static_cast<std::uint8_t>(winner.margin);
+    row.winners.leads[x] = static_cast<std::uint8_t>(winner.lead);
   }
 }
 
 void pathDown(const PathRow& row) {
-  switch (row.disparities / kLanes) {
-    case 1:
-      return pathOneDown<1>(row);
-    case 2:
-      return pathOneDown<2>(row);
-    case 3:
-      return pathOneDown<3>(row);
-    default:
-      return pathOneDown<0>(row);
-  }
+  withVectorsOf(row.disparities, [&](auto vectors) { pathOneDown<vectors.kCount>(row); });
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ constexpr float kFlatGain_sigmas = 3;
 // Of a pixel whose match differs by rounding only, of kChanceCost.
 constexpr int kLeastPairCost = 5;
 
+// What secondary pixels are claimed by is looked at again while it is still in the cache.
+constexpr int kLinesTogether = 16;
+
 template <typename Code>
 constexpr std::uint8_t codeOf(Code code) {
   return static_cast<std::uint8_t>(code);
@@ -37,9 +40,13 @@ void Validator::check(const ValidationInput& input, const ValidationParams& para
     const SecondaryView& view = input.sweep.views[v];
     countSteps(view, size.width);
     workers.share(view.vertical() ? size.width : size.height, [&](int begin, int end) {
-      const cv::Rect area = view.vertical() ? cv::Rect(begin, 0, end - begin, size.height)
-                                            : cv::Rect(0, begin, size.width, end - begin);
-      checkSecondary(input, v, area, rejection);
+      for (int at = begin; at < end; at += kLinesTogether) {
+        const int lines = std::min(kLinesTogether, end - at);
+        checkSecondary(
+            input, v,
+            view.vertical() ? cv::Rect(at, 0, lines, size.height) : cv::Rect(0, at, size.width, lines),
+            rejection);
+      }
     });
   }
   checkOwnCosts(input, params.largest_own_share, workers, rejection);
@@ -118,12 +125,12 @@ void Validator::checkSecondary(const ValidationInput& input, std::size_t view_in
     std::uint8_t* rejections = rejection[y];
     for (int x = area.x; x < end_x; ++x) {
       const int disparity_px = disparities_px[x];
+      const bool by_first = rejections[x] == codeOf(Rejection::kLeftRight);
+      if (rejections[x] != 0 && !by_first) continue;
       if (disparity_px > seen[x]) continue;
       const int claimed_px = claims[x + steps[disparity_px]] & (kCostUnit - 1);
       const bool contradicts = std::abs(claimed_px - disparity_px) > tolerance_px;
-      const bool by_first = rejections[x] == codeOf(Rejection::kLeftRight);
       if (!contradicts && !by_first) continue;
-      if (rejections[x] != 0 && !by_first) continue;
       const bool seen_by_both = seen_by_first != nullptr && disparity_px <= seen_by_first[x];
       rejections[x] =
           codeOf(seen_by_both && contradicts != by_first ? Rejection::kPairs : Rejection::kLeftRight);

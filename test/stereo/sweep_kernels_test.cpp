@@ -62,14 +62,15 @@ class Paths {
     paths.from_above = above_[0];
     paths.lowest_above = lowest_[0];
     paths.sums = sums_[0];
-    paths.winners = winners.data();
+    paths.winners = {disparities_px[0], margins[0], leads[0]};
     return paths;
   }
   int left(int x, int i) const { return left_(0, x * kStride + 1 + i); }
   int right(int x, int i) const { return right_(0, x * kStride + 1 + i); }
   int above(int x, int i) const { return above_(0, x * kStride + 1 + i); }
 
-  std::vector<PathWinner> winners = std::vector<PathWinner>(kWidth);
+  cv::Mat1s disparities_px{cv::Size(kWidth, 1)};
+  cv::Mat1b margins{cv::Size(kWidth, 1)}, leads{cv::Size(kWidth, 1)};
 
  private:
   cv::Mat1b left_{cv::Size(kWidth * kStride + kRoom, 1)}, right_{cv::Size(kWidth * kStride + kRoom, 1)},
@@ -127,10 +128,9 @@ TEST_P(Kernels, ChooseTheLowestSumAndTellItsMarginAndLead) {
       second = std::min(second, sumAt(i));
       rival = std::min<int>(rival, row.of(x)[i]);
     }
-    const PathWinner& winner = paths.winners[static_cast<std::size_t>(x)];
-    EXPECT_EQ(winner.index, best) << x;
-    EXPECT_EQ(winner.margin, second - sumAt(best)) << x;
-    EXPECT_EQ(winner.lead, std::max(0, rival - row.of(x)[best])) << x;
+    EXPECT_EQ(paths.disparities_px(0, x), best + 1) << x;
+    EXPECT_EQ(paths.margins(0, x), second - sumAt(best)) << x;
+    EXPECT_EQ(paths.leads(0, x), std::max(0, rival - row.of(x)[best])) << x;
   }
 }
 

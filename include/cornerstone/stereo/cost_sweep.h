@@ -38,7 +38,7 @@ struct Winners {
   cv::Mat1s cost_after;    // at disparity + 1
   cv::Mat1s chance_cost;   // of disparities just outside the search: what unrelated pixels cost here
   cv::Mat1b own_cost;      // of the pixel alone
-  cv::Mat1b margin, lead;  // see PathWinner
+  cv::Mat1b margin, lead;  // see PathWinners
 };
 
 // The columns that one worker sweeps, and what it keeps of them from row to row.
@@ -70,6 +70,7 @@ class CostSweep {
   void endCosts(Workers& workers);
   std::uint8_t* pairCostsOf(SweepStripe& stripe, int row);
   void knowPairCosts(SweepStripe& stripe, int end_row);
+  void pairCosts(SweepStripe& stripe, int row, const cv::Range& columns);
   void columnSums(SweepStripe& stripe, int row);
   void windowCosts(SweepStripe& stripe, int row);
   void jumpPenalties(const SweepStripe& stripe, int row);
@@ -87,7 +88,6 @@ class CostSweep {
   cv::Mat_<std::uint16_t> sums_;
   cv::Mat1b costs_, from_left_, from_right_, jump_ahead_, jump_down_;
   cv::Mat1b from_above_, lowest_above_;
-  std::vector<PathWinner> path_winners_;
   cv::Mat1s nearest_, farthest_;  // window costs of the disparities just outside the search
   cv::Mat1b plane_;               // pair costs at one disparity
   std::array<cv::Mat1b, 2> camera_planes_;

@@ -29,12 +29,19 @@ class SurfaceFilter {
     int parent = 0;  // another surface that this one is part of, or itself
     int pixels = 0, strong = 0;
   };
+  struct Run {  // neighbours of one surface in a row, and what is above them
+    const float *here, *above;
+    const int* labels_above;
+    int begin = 0, end = 0;
+  };
   int rootOf(int surface);
-  void join(int one, int other);
+  int join(int one, int other);  // root of both
+  int surfaceOf(const Run& run, float step_px);
   void label(const cv::Mat1f& disparity_px, const cv::Mat1b& evidence, float step_px);
   static Verdict verdictOn(const Surface& surface, const SurfaceParams& params);
 
   cv::Mat1i labels_;
+  std::vector<int> nothing_above_;  // labels before the first row
   std::vector<Surface> surfaces_;
   std::vector<std::uint8_t> verdict_of_;  // by label + 1
 };

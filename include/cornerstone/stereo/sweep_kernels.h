@@ -40,11 +40,11 @@ struct WindowRow {
   unsigned scale = 0;  // costs = sums * scale >> 16
 };
 
-// Of one pixel, over all disparities.
-struct PathWinner {
-  short index = 0;          // i of the lowest sum
-  std::uint8_t margin = 0;  // second lowest sum, at another than the neighbouring disparities, less lowest
-  std::uint8_t lead = 0;    // lowest of the pixel's own costs, likewise, less that of the winner; not below 0
+// Of each pixel of a row, over all disparities.
+struct PathWinners {
+  short* disparities_px = nullptr;  // i + 1 of the lowest sum
+  std::uint8_t* margins = nullptr;  // second lowest sum, not at a neighbouring disparity, less lowest
+  std::uint8_t* leads = nullptr;    // lowest of the pixel's costs, likewise, less the winner's; not below 0
 };
 
 // Each pixel's path costs lie between two bytes of 255: cost(x, i) at x * (disparities + 2) + 1 + i.
@@ -57,7 +57,7 @@ struct PathRow {
   std::uint8_t *from_left = nullptr, *from_right = nullptr, *from_above = nullptr;
   std::uint8_t* lowest_above = nullptr;  // of each pixel's costs from above
   std::uint8_t* sums = nullptr;          // of one pixel, scratch
-  PathWinner* winners = nullptr;
+  PathWinners winners;
 };
 
 // Weighted means over a line of values around each of a row, of those within a step of the middle one.
