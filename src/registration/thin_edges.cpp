@@ -74,12 +74,11 @@ std::vector<EdgePoint> thinEdges(const std::vector<EdgePoint>& edges, double squ
   return sums;
 }
 
-std::vector<EdgeSample> samplesOf(const std::vector<EdgePoint>& edges) {
-  std::vector<EdgeSample> samples;
-  samples.reserve(edges.size());
+EdgeSamples samplesOf(const std::vector<EdgePoint>& edges) {
+  EdgeSamples samples;
   for (const EdgePoint& edge : edges) {
     const double turns_256 = std::atan2(edge.normal.y(), edge.normal.x()) * 128 / M_PI;
-    samples.push_back({edge.position_m.cast<float>(), static_cast<int>(std::lround(turns_256)) & 255});
+    samples.add(edge.position_m.cast<float>(), static_cast<int>(std::lround(turns_256)) & 255);
   }
   return samples;
 }
