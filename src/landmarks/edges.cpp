@@ -127,9 +127,9 @@ EdgePoint onLocalLine(const EdgePoint& edge, const EdgeIndex& index, double radi
   index.forEachNear(edge.position_m, radius_m, [&](const EdgePoint& other) {
     const double x = other.position_m.x() - at_x, y = other.position_m.y() - at_y;
     // A factor, not a branch: no processor foretells which neighbours count.
+    const double is_near = x * x + y * y <= radius_m * radius_m ? 1 : 0;
     const double counts =
-        static_cast<int>(x * x + y * y <= radius_m * radius_m) &
-        static_cast<int>(other.normal.x() * normal_x + other.normal.y() * normal_y >= kSameWallCosine);
+        other.normal.x() * normal_x + other.normal.y() * normal_y >= kSameWallCosine ? is_near : 0;
     const double counted_x = counts * x, counted_y = counts * y;
     count += counts;
     sum_x += counted_x;
