@@ -93,19 +93,19 @@ Pose2 CornerFitter::approach(const Pose2& guess) {
 
 // Of either facing, the edges that may lie beside the arms while the corner settles; none where edges do not
 // cover the arms.
-std::array<std::vector<EdgePoint>, 2> CornerFitter::edgesAround(const Pose2& corner) const {
+const CornerFitter::EdgesByFacing& CornerFitter::edgesAround(const Pose2& corner) {
   const double reach_m =
       params_.dilation_m + params_.polish_reach_m;  // a step, then the search beside the arms
   const int bins = binsOf(params_);
   const Eigen::Matrix2d rotation = corner.rotation();
-  std::array<std::vector<EdgePoint>, 2> around;
+  for (std::vector<EdgePoint>& edges : around_) edges.clear();
   std::array<std::array<std::bitset<kMaxBins>, 2>, 2> covered;
   const double half_m = (0.5 * params_.arm_length_m + reach_m) * rotation.row(0).cwiseAbs().sum();
   const Eigen::Vector2d middle = corner * Eigen::Vector2d::Constant(0.5 * params_.arm_length_m);
   index_.forEachNear(middle, half_m, [&](const EdgePoint& edge) {
     const Eigen::Vector2d p = rotation.transpose() * (edge.position_m - corner.translation());
-    if (p.minCoeff() < -reach_m || p.minCoeff() > reach_m || p.maxCoeff() > params_.arm_length_m + reach_m)
-      return;
+    const double least = std::min(p.x(), p.y()), most = std::max(p.x(), p.y());
+    if (std::abs(least) > reach_m || most > params_.arm_length_m + reach_m) return;
     const Eigen::Vector2d n = rotation.transpose() * edge.normal;
     bool belongs[2] = {false, false};
     for (int arm = 0; arm < 2; ++arm) {
@@ -119,13 +119,13 @@ std::array<std::vector<EdgePoint>, 2> CornerFitter::edgesAround(const Pose2& cor
             static_cast<std::size_t>(along / params_.arm_length_m * bins));
     }
     for (std::size_t facing = 0; facing < 2; ++facing)
-      if (belongs[facing]) around[facing].push_back(edge);
+      if (belongs[facing]) around_[facing].push_back(edge);
   });
   for (std::size_t facing = 0; facing < 2; ++facing)
     if (static_cast<double>(std::min(covered[facing][0].count(), covered[facing][1].count())) <
         params_.min_support * bins)
-      around[facing].clear();
-  return around;
+      around_[facing].clear();
+  return around_;
 }
 
 std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, const std::vector<EdgePoint>& edges,
@@ -159,7 +159,7 @@ std::optional<CornerLandmark> CornerFitter::settle(const Pose2& near, const std:
 
 std::vector<CornerLandmark> CornerFitter::fit(const Pose2& guess) {
   const Pose2 near = approach(guess);
-  const std::array<std::vector<EdgePoint>, 2> edges = edgesAround(near);
+  const EdgesByFacing& edges = edgesAround(near);
   std::vector<CornerLandmark> corners;
   for (std::size_t facing = 0; facing < 2; ++facing) {
     const CornerKind kind = facing == 0 ? CornerKind::kInsideFree : CornerKind::kInsideSolid;

@@ -29,16 +29,24 @@ std::array<unsigned char, kSquare * kPitch> distanceStamp() {
 DistanceField::DistanceField(const std::vector<EdgePoint>& edges, const GridGeometry& geometry)
     : distances_(geometry.rows, geometry.cols,
                  static_cast<unsigned char>((kReachCells + 1) * kDistanceUnits)) {
-  const auto stamp = distanceStamp();
+  std::vector<Cell> cells;
   for (const EdgePoint& edge : edges) {
     // Many edges lie on the border between two cells, to the last digit: they count to the upper one.
     const Cell cell =
         geometry.cellAt(edge.position_m + Eigen::Vector2d::Constant(kInside * geometry.resolution_m));
-    if (!geometry.contains(cell) || distances_(cell.row, cell.col) == 0) continue;
-    const int left = std::max(cell.col - kReachCells, 0),
-              right = std::min(cell.col + kReachCells, geometry.cols - 1);
-    const int bottom = std::max(cell.row - kReachCells, 0),
-              top = std::min(cell.row + kReachCells, geometry.rows - 1);
+    if (!geometry.contains(cell) || isEdge(cell.col, cell.row)) continue;
+    distances_(cell.row, cell.col) = 0;
+    cells.push_back(cell);
+  }
+  const auto stamp = distanceStamp();
+  for (const Cell cell : cells) {
+    // Beyond a neighbour that is an edge, too, that one is nearer: along a wall little is left to write.
+    const int left = isEdge(cell.col - 1, cell.row) ? cell.col : std::max(cell.col - kReachCells, 0);
+    const int right =
+        isEdge(cell.col + 1, cell.row) ? cell.col : std::min(cell.col + kReachCells, geometry.cols - 1);
+    const int bottom = isEdge(cell.col, cell.row - 1) ? cell.row : std::max(cell.row - kReachCells, 0);
+    const int top =
+        isEdge(cell.col, cell.row + 1) ? cell.row : std::min(cell.row + kReachCells, geometry.rows - 1);
     for (int row = bottom; row <= top; ++row) {
       unsigned char* to = distances_[row] + left;
       const unsigned char* from = &stamp[static_cast<std::size_t>((row - cell.row + kReachCells) * kPitch +
@@ -49,6 +57,10 @@ DistanceField::DistanceField(const std::vector<EdgePoint>& edges, const GridGeom
         for (int i = 0; i <= right - left; ++i) to[i] = std::min(to[i], from[i]);
     }
   }
+}
+
+bool DistanceField::isEdge(int col, int row) const {
+  return col >= 0 && row >= 0 && col < distances_.cols && row < distances_.rows && distances_(row, col) == 0;
 }
 
 double DistanceField::at(const Eigen::Vector2d& point_cells) const {

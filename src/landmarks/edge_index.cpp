@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSameSideCosine =
     0.7071;  // 45 degrees: the two faces of a wall and the arms of a corner stay apart
+constexpr double kCloseShare = 0.25;  // of a search radius
 constexpr double kMaxBuckets = 5e7;
 
 }  // namespace
@@ -41,8 +42,15 @@ EdgeIndex::EdgeIndex(const std::vector<EdgePoint>& edges, double bucket_m) : per
     edges_[static_cast<std::size_t>(next[static_cast<std::size_t>(bucket_of[i])]++)] = edges[i];
 }
 
+// What is found close by is the nearest one: most have theirs there, and fewer buckets are looked through.
 const EdgePoint* EdgeIndex::nearest(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal,
                                     double radius_m) const {
+  const EdgePoint* const close = nearestWithin(point_m, normal, kCloseShare * radius_m);
+  return close != nullptr ? close : nearestWithin(point_m, normal, radius_m);
+}
+
+const EdgePoint* EdgeIndex::nearestWithin(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal,
+                                          double radius_m) const {
   const EdgePoint* best = nullptr;
   double best_squared = radius_m * radius_m;
   forEachNear(point_m, radius_m, [&](const EdgePoint& edge) {

@@ -97,6 +97,7 @@ int nextOccupied(const cv::Mat1b& states, int row, int col) {
 std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
   const FreeSide free_side(states);
   std::vector<EdgePoint> faces;
+  faces.reserve(states.total() / 16);  // more than walls have; memory that is never written costs nothing
   for (int row = 0; row < states.rows; ++row) {
     for (int col = nextOccupied(states, row, 0); col < states.cols;
          col = nextOccupied(states, row, col + 1)) {
@@ -119,23 +120,26 @@ std::vector<EdgePoint> findFaces(const GridMap& map, const cv::Mat1b& states) {
 
 // The line through an edge's neighbours of the same wall; the edge moves onto it along its normal.
 EdgePoint onLocalLine(const EdgePoint& edge, const EdgeIndex& index, double radius_m) {
-  double count = 0;
-  Eigen::Vector2d sum(0, 0);
-  double xx = 0, xy = 0, yy = 0;
+  // Numbers rather than vectors: those the compiler keeps in memory, and each step then waits for the last.
+  double count = 0, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+  const double at_x = edge.position_m.x(), at_y = edge.position_m.y();
+  const double normal_x = edge.normal.x(), normal_y = edge.normal.y();
   index.forEachNear(edge.position_m, radius_m, [&](const EdgePoint& other) {
-    const Eigen::Vector2d offset = other.position_m - edge.position_m;
+    const double x = other.position_m.x() - at_x, y = other.position_m.y() - at_y;
     // A factor, not a branch: no processor foretells which neighbours count.
-    const double counts = static_cast<int>(offset.squaredNorm() <= radius_m * radius_m) &
-                          static_cast<int>(other.normal.dot(edge.normal) >= kSameWallCosine);
-    const Eigen::Vector2d counted = counts * offset;
+    const double is_near = x * x + y * y <= radius_m * radius_m ? 1 : 0;
+    const double counts =
+        other.normal.x() * normal_x + other.normal.y() * normal_y >= kSameWallCosine ? is_near : 0;
+    const double counted_x = counts * x, counted_y = counts * y;
     count += counts;
-    sum += counted;
-    xx += counted.x() * offset.x();
-    xy += counted.x() * offset.y();
-    yy += counted.y() * offset.y();
+    sum_x += counted_x;
+    sum_y += counted_y;
+    xx += counted_x * x;
+    xy += counted_x * y;
+    yy += counted_y * y;
   });
   if (count < 3) return edge;
-  const Eigen::Vector2d mean = sum / count;
+  const Eigen::Vector2d mean(sum_x / count, sum_y / count);
   // The line's direction is half the angle of (xx - yy, 2 xy); the normal is across it.
   const Eigen::Vector2d doubled((xx - yy) / count - mean.x() * mean.x() + mean.y() * mean.y(),
                                 2 * (xy / count - mean.x() * mean.y()));
@@ -161,12 +165,13 @@ cv::Mat1b cellStates(const GridMap& map, const EdgeParams& params) {
   cv::Mat1b states(map.occupied.size());
   const auto occupied = static_cast<float>(params.occupied_above),
              free = static_cast<float>(params.free_below);
+  const int cols = states.cols;  // a byte written might change the member, for all that the compiler knows
   int uncertain = 0;
   for (int row = 0; row < states.rows; ++row) {
     const float* from = map.occupied[row];
     unsigned char* to = states[row];
     int in_row = 0;
-    for (int col = 0; col < states.cols; ++col) {
+    for (int col = 0; col < cols; ++col) {
       const float probability = from[col];
       const int is_occupied = probability > occupied, is_free = probability < free;
       to[col] = static_cast<unsigned char>(kOccupiedCell * is_occupied + kFreeCell * is_free);

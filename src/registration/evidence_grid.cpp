@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "cornerstone/registration/thin_edges.h"
-
 namespace cornerstone {
 namespace {
 
@@ -64,7 +62,7 @@ class Stamps {
 EvidenceGrid::EvidenceGrid(SquareCounts counts, const std::vector<EdgePoint>& edges, double reach_m)
     : counts_(std::move(counts)),
       per_square_(static_cast<float>(1 / counts_.square_m)),
-      table_(counts_.free.size() * kEvidenceDirections, static_cast<std::uint8_t>(kFullEvidence)) {
+      table_((counts_.free.size() + 1) * kEvidenceDirections, static_cast<std::uint8_t>(kFullEvidence)) {
   markFree();
   addEdges(edges, static_cast<float>(reach_m / counts_.square_m));
 }

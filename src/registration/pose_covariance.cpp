@@ -71,18 +71,23 @@ struct Place {
   }
 };
 
-Eigen::Vector2d acrossWalls(int direction) {
-  return Pose2{0, 0, direction * 2 * M_PI / kDirections} * Eigen::Vector2d(1, 0);
+std::array<Eigen::Vector2d, kDirections> acrossWalls() {
+  std::array<Eigen::Vector2d, kDirections> across;
+  for (int d = 0; d < kDirections; ++d)
+    across[static_cast<std::size_t>(d)] = Pose2{0, 0, d * 2 * M_PI / kDirections} * Eigen::Vector2d(1, 0);
+  return across;
 }
 
 // Pairs of one direction without a gap in depth.
 std::vector<Wall> wallsOf(const FittedPairs& fitted, const Jacobian& jacobian) {
+  const std::array<Eigen::Vector2d, kDirections> across_walls = acrossWalls();
   std::vector<Place> places;
+  places.reserve(fitted.pairs.size());
   for (std::size_t i = 0; i < fitted.pairs.size(); ++i) {
     const LinePair& pair = fitted.pairs[i];
     const double turns = std::atan2(pair.normal.y(), pair.normal.x()) / (2 * M_PI);
     const int direction = (static_cast<int>(std::lround(turns * kDirections)) + kDirections) % kDirections;
-    places.push_back({direction, acrossWalls(direction).dot(pair.reference_m), i});
+    places.push_back({direction, across_walls[static_cast<std::size_t>(direction)].dot(pair.reference_m), i});
   }
   std::sort(places.begin(), places.end());
   std::vector<Wall> walls;
@@ -90,7 +95,7 @@ std::vector<Wall> wallsOf(const FittedPairs& fitted, const Jacobian& jacobian) {
     if (i == 0 || places[i].direction != places[i - 1].direction ||
         places[i].depth_m > places[i - 1].depth_m + kGap_m)
       walls.emplace_back();
-    const Eigen::Vector2d across = acrossWalls(places[i].direction);
+    const Eigen::Vector2d& across = across_walls[static_cast<std::size_t>(places[i].direction)];
     walls.back().add(fitted.pairs[places[i].pair],
                      jacobian.row(static_cast<Eigen::Index>(places[i].pair)).transpose(),
                      Eigen::Vector2d(-across.y(), across.x()));

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cornerstone {
 namespace {
 
 // The edges of one map on the grid of another.
-PoseScore scoreOn(const EvidenceGrid& grid, const std::vector<EdgeSample>& samples,
-                  const Pose2& grid_from_samples, std::size_t max_samples) {
+PoseScore scoreOn(const EvidenceGrid& grid, const EdgeSamples& samples, const Pose2& grid_from_samples,
+                  std::size_t max_samples) {
   const std::size_t count = std::min(samples.size(), max_samples);
   if (count == 0) return {};
   const Eigen::Matrix2f rotation = grid.squaresPerMetre() * grid_from_samples.rotation().cast<float>();
@@ -16,16 +17,11 @@ PoseScore scoreOn(const EvidenceGrid& grid, const std::vector<EdgeSample>& sampl
       grid.squaresPerMetre() * (grid_from_samples.translation().cast<float>() - grid.origin());
   const float c = rotation(0, 0), s = rotation(1, 0), x = shift.x(), y = shift.y();
   const int turn = static_cast<int>(std::lround(grid_from_samples.yaw_rad * 128 / M_PI));
-  int agree = 0, both = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const EdgeSample& sample = samples[i];
-    const float px = sample.position_m.x(), py = sample.position_m.y();
-    const int evidence = grid.atSquare(c * px - s * py + x, s * px + c * py + y, sample.direction_256 + turn);
-    agree += std::max(evidence, 0);
-    both += evidence;
-  }
+  const EvidenceSum sum = grid.sum(samples, count, turn, [&](float px, float py) {
+    return std::pair(c * px - s * py + x, s * px + c * py + y);
+  });
   const double scale = static_cast<double>(samples.size()) / (static_cast<double>(count) * kFullEvidence);
-  return {agree * scale, (agree - both) * scale};
+  return {sum.agree * scale, -sum.contradict * scale};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "cornerstone/landmarks/crop.h"
@@ -83,9 +84,11 @@ void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const Reg
 // Puts the hypotheses in the order of their elastic scores, best first, and returns the scores.
 std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence& here,
                                      std::vector<Hypothesis>& hypotheses) {
-  std::vector<std::pair<PoseScore, Hypothesis>> scored;
-  for (const Hypothesis& h : hypotheses)
-    scored.emplace_back(scoreElastic(there, here, h.reference_from_current, {}), h);
+  std::vector<std::pair<PoseScore, Hypothesis>> scored(hypotheses.size());
+  cv::parallel_for_(cv::Range(0, static_cast<int>(scored.size())), [&](const cv::Range& range) {
+    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i)
+      scored[i] = {scoreElastic(there, here, hypotheses[i].reference_from_current, {}), hypotheses[i]};
+  });
   std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) {
     return a.first.agree - a.first.contradict > b.first.agree - b.first.contradict;
   });
@@ -144,7 +147,7 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
   std::vector<EdgePoint> edges = thinEdges(view.landmarks.edges, params.fine_cell_m);
   Eigen::Vector2d middle(0, 0);
   for (const EdgePoint& edge : edges) middle += edge.position_m / static_cast<double>(edges.size());
-  std::vector<EdgeSample> samples = samplesOf(edges);
+  EdgeSamples samples = samplesOf(edges);
   const cv::Mat1b& states = view.landmarks.states;
   const cv::Rect known = states.empty() ? cv::Rect() : cv::boundingRect(states);
   SquareCounts counts =

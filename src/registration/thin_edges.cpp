@@ -20,18 +20,17 @@ class Places {
   std::size_t of(std::uint64_t key) {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = static_cast<std::size_t>(key * 0x9E3779B97F4A7C15 >> 32) & mask;  // Fibonacci hashing
-    while (slots_[slot].place != 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
-    if (slots_[slot].place == 0) slots_[slot] = {key, ++count_};
-    return slots_[slot].place - 1;
+    while (slots_[slot] != 0 && keys_[slots_[slot] - 1] != key) slot = (slot + 1) & mask;
+    if (slots_[slot] == 0) {
+      keys_.push_back(key);
+      slots_[slot] = static_cast<std::uint32_t>(keys_.size());
+    }
+    return slots_[slot] - 1;
   }
 
  private:
-  struct Slot {
-    std::uint64_t key = 0;
-    std::size_t place = 0;  // from 1 on; 0: empty
-  };
-  std::vector<Slot> slots_;
-  std::size_t count_ = 0;
+  std::vector<std::uint32_t> slots_;  // places, from 1 on; 0: empty
+  std::vector<std::uint64_t> keys_;   // by place
 };
 
 std::uint64_t keyOf(const EdgePoint& edge, double square_m) {
@@ -74,12 +73,11 @@ std::vector<EdgePoint> thinEdges(const std::vector<EdgePoint>& edges, double squ
   return sums;
 }
 
-std::vector<EdgeSample> samplesOf(const std::vector<EdgePoint>& edges) {
-  std::vector<EdgeSample> samples;
-  samples.reserve(edges.size());
+EdgeSamples samplesOf(const std::vector<EdgePoint>& edges) {
+  EdgeSamples samples;
   for (const EdgePoint& edge : edges) {
     const double turns_256 = std::atan2(edge.normal.y(), edge.normal.x()) * 128 / M_PI;
-    samples.push_back({edge.position_m.cast<float>(), static_cast<int>(std::lround(turns_256)) & 255});
+    samples.add(edge.position_m.cast<float>(), static_cast<int>(std::lround(turns_256)) & 255);
   }
   return samples;
 }

@@ -20,7 +20,7 @@ struct Bounds {
 
 // A map turned by a yaw, and where each of its parts falls on the transform's grid.
 struct Turned {
-  const std::vector<EdgeSample>& samples;
+  const EdgeSamples& samples;
   const std::vector<Opinion>& opinions;
   double opinion_cell_m;
   Eigen::Matrix2f rotation;
@@ -49,27 +49,29 @@ struct Spectra {
 // The grid of the transform.
 struct Raster {
   float square_m;
-  int size;
+  cv::Size size;
   float contradiction;  // weight of what says that no edge is there
 };
 
 Spectra transform(const Turned& map, const Eigen::Vector2f& low, const Raster& raster) {
   const auto& [square_m, size, contradiction] = raster;
-  cv::Mat1f edges(size, size, 0.0f), says(size, size, 0.0f);
+  cv::Mat1f edges(size, 0.0f), says(size, 0.0f);
+  int used_rows = 0;
   const auto at = [&](cv::Mat1f& grid, const Eigen::Vector2f& p) -> float& {
     const Eigen::Vector2f cell = (map.rotation * p - low) / raster.square_m;
-    return grid(std::clamp(static_cast<int>(cell.y() + 0.5f), 0, raster.size - 1),
-                std::clamp(static_cast<int>(cell.x() + 0.5f), 0, raster.size - 1));
+    const int row = std::clamp(static_cast<int>(cell.y() + 0.5f), 0, grid.rows - 1);
+    used_rows = std::max(used_rows, row + 1);
+    return grid(row, std::clamp(static_cast<int>(cell.x() + 0.5f), 0, grid.cols - 1));
   };
-  for (const EdgeSample& sample : map.samples) at(edges, sample.position_m) += 1;
+  for (std::size_t i = 0; i < map.samples.size(); ++i) at(edges, map.samples.position_m(i)) += 1;
   const auto share = static_cast<float>(std::pow(map.opinion_cell_m / square_m, 2) / kFullEvidence);
   for (const Opinion& opinion : map.opinions)
     at(says, opinion.centre_m) +=
         share * (opinion.evidence < 0 ? contradiction * static_cast<float>(opinion.evidence)
                                       : static_cast<float>(opinion.evidence));
   Spectra spectra;
-  cv::dft(edges, spectra.edges);
-  cv::dft(says, spectra.says);
+  cv::dft(edges, spectra.edges, 0, used_rows);
+  cv::dft(says, spectra.says, 0, used_rows);
   return spectra;
 }
 
@@ -115,15 +117,15 @@ class HighestPeaks {
 // The highest squares of a correlation, none beside a higher one.
 std::vector<cv::Point> highest(const cv::Mat1f& scores, std::size_t count) {
   HighestPeaks peaks(count);
-  const int size = scores.rows;
-  for (int r = 0; r < size; ++r) {
+  const int rows = scores.rows, cols = scores.cols;
+  for (int r = 0; r < rows; ++r) {
     const float* row = scores[r];
-    const float* above = scores[(r + 1) % size];
-    const float* below = scores[(r + size - 1) % size];
-    for (int c = 0; c < size; ++c) {
+    const float* above = scores[(r + 1) % rows];
+    const float* below = scores[(r + rows - 1) % rows];
+    for (int c = 0; c < cols; ++c) {
       const float s = row[c];
       if (s <= peaks.floor()) continue;
-      const int left = c == 0 ? size - 1 : c - 1, right = c + 1 == size ? 0 : c + 1;
+      const int left = c == 0 ? cols - 1 : c - 1, right = c + 1 == cols ? 0 : c + 1;
       if (s < row[left] || s <= row[right] || s < below[c] || s <= above[c]) continue;
       peaks.add({s, cv::Point(c, r)});
     }
@@ -137,13 +139,16 @@ class Correlation {
   Correlation(const Turned& there, const Turned& here, const WallSearchOptions& options)
       : here_(here), peaks_(options.peaks), low_(there.bounds().low) {
     const Bounds there_bounds = there.bounds(), here_bounds = here.bounds();
-    there_size_m_ = (there_bounds.high - there_bounds.low).maxCoeff();
+    there_size_m_ = there_bounds.high - there_bounds.low;
     // Turned by any yaw the current map is no larger than its diagonal.
-    const float needed_m = there_size_m_ + (here_bounds.high - here_bounds.low).norm();
+    const Eigen::Vector2f needed_m = there_size_m_.array() + (here_bounds.high - here_bounds.low).norm();
     const float square_m = std::max(static_cast<float>(options.square_m),
-                                    needed_m / static_cast<float>(options.max_size_squares - 4));
-    raster_ = {square_m, cv::getOptimalDFTSize(static_cast<int>(std::ceil(needed_m / square_m)) + 4),
-               static_cast<float>(options.contradiction)};
+                                    needed_m.maxCoeff() / static_cast<float>(options.max_size_squares - 4));
+    const auto squares = [&](float length_m) {
+      return cv::getOptimalDFTSize(static_cast<int>(std::ceil(length_m / square_m)) + 4);
+    };
+    raster_ = {
+        square_m, {squares(needed_m.x()), squares(needed_m.y())}, static_cast<float>(options.contradiction)};
     fixed_ = transform(there, low_, raster_);
   }
 
@@ -155,7 +160,7 @@ class Correlation {
     const Eigen::Vector2f low = here.bounds().low;
     const Spectra moving = transform(here, low, raster_);
     for (const cv::Point& peak : highest(product(moving, true), peaks_)) {
-      const Eigen::Vector2f shift = raster_.square_m * Eigen::Vector2f(unwrapped(peak.x), unwrapped(peak.y));
+      const Eigen::Vector2f shift = raster_.square_m * unwrapped(peak);
       poses.push_back(poseOf(shift + low_ - low, yaw));
     }
     if (!opposite_too) return poses;
@@ -177,18 +182,20 @@ class Correlation {
     return scores;
   }
   // Shifts beyond the reference map's size are negative ones, wrapped round.
-  float unwrapped(int shift) const {
-    const auto squares = static_cast<float>(shift);
-    return squares * raster_.square_m > there_size_m_ + 2 * raster_.square_m
-               ? squares - static_cast<float>(raster_.size)
-               : squares;
+  Eigen::Vector2f unwrapped(const cv::Point& shift) const {
+    const auto along = [&](int squares, int size, float there_m) {
+      const float shift_m = static_cast<float>(squares) * raster_.square_m;
+      return static_cast<float>(shift_m > there_m + 2 * raster_.square_m ? squares - size : squares);
+    };
+    return {along(shift.x, raster_.size.width, there_size_m_.x()),
+            along(shift.y, raster_.size.height, there_size_m_.y())};
   }
   static Pose2 poseOf(const Eigen::Vector2f& shift_m, double yaw) { return {shift_m.x(), shift_m.y(), yaw}; }
 
   Turned here_;
   std::size_t peaks_;
   Eigen::Vector2f low_;
-  float there_size_m_;
+  Eigen::Vector2f there_size_m_;
   Raster raster_;
   Spectra fixed_;
 };

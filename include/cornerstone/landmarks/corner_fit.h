@@ -24,7 +24,8 @@ class CornerFitter {
   std::vector<CornerLandmark> fit(const Pose2& guess);
 
  private:
-  std::array<std::vector<EdgePoint>, 2> edgesAround(const Pose2& corner) const;
+  using EdgesByFacing = std::array<std::vector<EdgePoint>, 2>;
+  const EdgesByFacing& edgesAround(const Pose2& corner);
   // The pose nearest to a first guess, by the distance field.
   Pose2 approach(const Pose2& guess);
   // The corner of one kind, from the edges that face the right way.
@@ -35,6 +36,8 @@ class CornerFitter {
   LandmarkParams params_;
   const EdgeIndex& index_;
   CornerCost cost_;
+  // Kept from fit to fit for their memory.
+  EdgesByFacing around_;
   Eigen::VectorXd residuals_;
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> jacobian_;
 };

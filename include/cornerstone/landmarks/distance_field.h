@@ -34,6 +34,8 @@ class DistanceField {
   const cv::Mat1b& cells() const { return distances_; }  // at the cell centres, in kDistanceUnits to the cell
 
  private:
+  bool isEdge(int col, int row) const;
+
   struct Square {
     int a, b, c, d;  // a and b below, c and d above, from the left
   };

@@ -37,6 +37,8 @@ class EdgeIndex {
   const std::vector<EdgePoint>& edges() const { return edges_; }  // bucket by bucket
 
  private:
+  const EdgePoint* nearestWithin(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal,
+                                 double radius_m) const;
   // Of an offset from the origin; far ones are somewhere beyond either end.
   int bucket(double offset_m) const {
     return static_cast<int>(std::clamp(offset_m * per_bucket_, -2.0, 1e9) + 2) - 2;  // rounds down

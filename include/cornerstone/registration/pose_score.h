@@ -15,12 +15,12 @@ namespace cornerstone {
 struct MapEvidence {
   EvidenceGrid coarse;
   EvidenceGrid fine;
-  std::vector<EdgePoint> edges;     // thinned, in an order without pattern
-  std::vector<EdgeSample> samples;  // the same, for the grids
-  Eigen::Vector2d middle_m;         // mean of the edges
-  double cell_m;                    // of the map itself
-  std::vector<double> directions;   // of the walls (proposals.h)
-  EdgeIndex all_edges;              // of the map, as found
+  std::vector<EdgePoint> edges;    // thinned, in an order without pattern
+  EdgeSamples samples;             // the same, for the grids
+  Eigen::Vector2d middle_m;        // mean of the edges
+  double cell_m;                   // of the map itself
+  std::vector<double> directions;  // of the walls (proposals.h)
+  EdgeIndex all_edges;             // of the map, as found
 };
 
 struct EvidencePair {
