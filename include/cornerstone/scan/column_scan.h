@@ -46,7 +46,8 @@ struct ScanParams {
   // Error of all disparities of a frame together (calibration, pixel locking), which no averaging removes.
   double common_sigma_px = 0.1;
   // Of it, what a rig gets wrong in every look alike (scan_calibration.h): for rigs that calibrate themselves
-  // (stereo/self_calibration.h) a hundredth of a pixel or two, else 0.05 to 0.1. The mapper looks for no more.
+  // (stereo/self_calibration.h) a hundredth of a pixel or two, else 0.05 to 0.1. The mapper looks for no
+  // more.
   double calibration_sigma_px = 0.02;
   double min_range_m = 0.2;  // from the camera; nearer answers are mismatches
   // Points within this radius of the base's origin are the robot's own body (bumper, mast, payload).
