@@ -83,7 +83,10 @@ class DriftingOdometry {
       const double stretch = scale_ + (way_m > 0 ? 0.01 * normal_(random_) / root : 0);
       const double turn_rad =
           step.yaw_rad + drift_rad_per_m_ * way_m + 0.5 * M_PI / 180 * root * normal_(random_);
-      odom_from_base_ = odom_from_base_ * Pose2{step.x_m * stretch, step.y_m * stretch, turn_rad};
+      // Heading is lost along the way, not at its end.
+      const Pose2 half_way{0, 0, 0.5 * (turn_rad - step.yaw_rad)};
+      odom_from_base_ = odom_from_base_ * half_way * Pose2{step.x_m * stretch, step.y_m * stretch, 0} *
+                        Pose2{0, 0, turn_rad - half_way.yaw_rad};
     }
     started_ = true;
     last_ = world_from_base;

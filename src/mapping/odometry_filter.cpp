@@ -54,7 +54,11 @@ void OdometryFilter::place(const PoseEstimate& estimate) {
 
 void OdometryFilter::step(const Pose2& odom_step) {
   const double dx = odom_step.x_m, dy = odom_step.y_m, turn = odom_step.yaw_rad;
-  const Pose2 step{dx * (1 - rates_(0)), dy * (1 - rates_(0)), turn - rates_(1) * dx - rates_(2) * turn};
+  // Heading is lost evenly along the step: its direction is off by half of what is lost.
+  const double drift_rad = rates_(1) * dx + rates_(2) * turn;
+  const Eigen::Vector2d way =
+      (1 - rates_(0)) * (Pose2{0, 0, -0.5 * drift_rad}.rotation() * Eigen::Vector2d(dx, dy));
+  const Pose2 step{way.x(), way.y(), turn - drift_rad};
   const Eigen::Matrix2d rotation = map_from_base_.rotation();
   const Eigen::Vector2d moved = rotation * step.translation();
 

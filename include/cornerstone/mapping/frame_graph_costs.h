@@ -45,17 +45,21 @@ class FrameMatchCost {
 };
 
 // The step that odometry reports, less its systematic drift (odometry_filter.h): rates are scale, yaw per
-// metre in rad/m, scale of turns.
+// metre in rad/m, scale of turns. Heading is lost evenly along the step, so that its direction is off by half
+// of what is lost.
 class OdometryStepCost {
  public:
   OdometryStepCost(const Pose2& step, const Eigen::Vector3d& sigmas) : step_(step), sigmas_(sigmas) {}
   template <typename T>
   bool operator()(const T* earlier, const T* later, const T* rates, T* residuals) const {
+    using std::cos;
+    using std::sin;
     relativeTo(Pose2{}, earlier, later, residuals);
-    residuals[0] = (residuals[0] - step_.x_m * (1.0 - rates[0])) / sigmas_.x();
-    residuals[1] = (residuals[1] - step_.y_m * (1.0 - rates[0])) / sigmas_.y();
-    residuals[2] =
-        (residuals[2] - step_.yaw_rad + rates[1] * step_.x_m + rates[2] * step_.yaw_rad) / sigmas_.z();
+    const T drift = rates[1] * step_.x_m + rates[2] * step_.yaw_rad;
+    const T c = (1.0 - rates[0]) * cos(0.5 * drift), s = (1.0 - rates[0]) * sin(0.5 * drift);
+    residuals[0] = (residuals[0] - (c * step_.x_m + s * step_.y_m)) / sigmas_.x();
+    residuals[1] = (residuals[1] - (c * step_.y_m - s * step_.x_m)) / sigmas_.y();
+    residuals[2] = (residuals[2] - step_.yaw_rad + drift) / sigmas_.z();
     return true;
   }
 
