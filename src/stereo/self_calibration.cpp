@@ -12,18 +12,18 @@ namespace {
 // Of each turn before anything is known: calibrations by boards leave half of it. With half, 40 looks know
 // the offset to 0.008 px instead of 0.007.
 constexpr double kPrior_px = 0.2;
-constexpr int kPeriod_sets = 5;       // costs a tenth of a match at 160x120, less for larger images
+constexpr int kPeriod_sets = 5;       // with the corrections a fifth of a match at 160x120
 constexpr int kReach_px = 3;          // windows of 7 x 7
 constexpr int kWindows = 300;         // in a grid over the image, elsewhere at each look
 constexpr float kLargestStep_px = 1;  // of the disparities in a window
 // What the surfaces' own shape does to a window: its evidence is never better than this.
 constexpr double kWindowFloor_px = 0.05;
-constexpr double kLeastVariance_grey2 = 1;
-constexpr double kCorrelated_px = 7;  // that share noise after smoothing
+constexpr double kLeastVariance_grey2 = 1;  // of the differences: no camera is quieter after smoothing
+constexpr double kCorrelated_px = 7;        // that share noise after smoothing
 // Looks half a second apart see nearly the same and err alike: one of them counts as a fourth.
 constexpr double kLookShare = 0.25;
-constexpr double kKept =
-    1 - 1.0 / 1000;                // of what is known, from look to look: rigs warm up. 8 minutes at 10 Hz
+// Of what is known, from look to look: rigs warm up. It lasts 8 minutes at 10 Hz.
+constexpr double kKept = 1 - 1.0 / 1000;
 constexpr double kLargest_px = 1;  // beyond, images do not match any more
 
 using Turning = Eigen::Matrix<double, 2, 3>;
