@@ -53,6 +53,10 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     diagnostics_.emplace(node, getPrivateNodeHandle(), "stereo");
     advertise(node);
     cameras_.emplace(node, params_, [this] { takeCalibrations(); });
+    if (params_.self_calibration)
+      for (const int camera : params_.third_camera ? std::vector<int>{1, 2} : std::vector<int>{1})
+        diagnostics_->tell(cameras_->nameOf(static_cast<std::size_t>(camera)) + " turned by px about x, y, z",
+                           [this, camera] { return turnsOf(camera); });
     sets_.emplace(node, params_, *diagnostics_, [this](const ImageSet& set) {
       cameras_->uncalibrated(set).empty() ? match(set) : hold(set);
     });
@@ -126,7 +130,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
         matcher_->match(images, rig, disparity_);
         rig_check_->look(images, disparity_);
         if (!rig_check_->complaint().empty()) throw InputError(rig_check_->complaint());
-        if (params_.self_calibration) calibrate(images);
+        if (params_.self_calibration) self_calibration_.correct(images, disparity_);
         publish(images.reference, set.images[0]->header);
       }
       const bool third_is_missing = params_.third_camera && !set.images[2];
@@ -141,18 +145,15 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
     }
   }
 
-  // And tells what was found.
-  void calibrate(const StereoImages& images) {
-    self_calibration_.correct(images, disparity_);
-    const auto &turns_px = self_calibration_.turns_px(), sigmas_px = self_calibration_.sigmas_px();
-    for (const Eigen::Index camera : {1, 2}) {
-      std::ostringstream text;
-      text << std::fixed << std::setprecision(3);
-      for (Eigen::Index i = 3 * (camera - 1); i < 3 * camera; ++i)
-        text << turns_px(i) << " +- " << sigmas_px(i) << (i % 3 < 2 ? ", " : "");
-      diagnostics_->tell(cameras_->nameOf(static_cast<std::size_t>(camera)) + " turned by px about x, y, z",
-                         text.str());
-    }
+  // About x, y and z, of camera 1 (right) or 2.
+  std::string turnsOf(Eigen::Index camera) const {
+    const SelfCalibration::Turns &turns_px = self_calibration_.turns_px(),
+                                 sigmas_px = self_calibration_.sigmas_px();
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(3);
+    for (Eigen::Index i = 3 * (camera - 1); i < 3 * camera; ++i)
+      text << turns_px(i) << " +- " << sigmas_px(i) << (i % 3 < 2 ? ", " : "");
+    return text.str();
   }
 
   bool isWanted() const {

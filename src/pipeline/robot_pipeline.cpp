@@ -5,7 +5,6 @@
 namespace cornerstone {
 
 void describe(ParamVisitor& visitor, PipelineParams& params) {
-  visitor.field("self_calibration", params.self_calibration);
   visitor.group("stereo", [&] { describe(visitor, params.stereo); });
   visitor.group("scan", [&] { describe(visitor, params.scan); });
   visitor.group("mapper", [&] { describe(visitor, params.mapper); });
@@ -20,7 +19,7 @@ RobotPipeline::RobotPipeline(const StereoMounting& mounting, const PipelineParam
 
 MapperUpdate RobotPipeline::update(const StereoImages& images, const Pose2& odom_from_base) {
   Disparity disparity = matcher_.match(images, mounting_.rig);
-  if (params_.self_calibration) self_calibration_.correct(images, disparity);
+  self_calibration_.correct(images, disparity);
   const RangeScan scan = scanFromDisparity(disparity, mounting_.base_from_camera, params_.scan);
   return mapper_.update(scan, odom_from_base);
 }

@@ -43,7 +43,7 @@ void StageDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& statu
   status.add("dropped", all);
   status.addf("mean_ms", "%.2f", processed_ > 0 ? 1e3 * busy_s_ / processed_ : 0.0);
   status.addf("longest_ms", "%.2f", 1e3 * longest_s_);
-  for (const auto& [name, value] : told_) status.add(name, value);
+  for (const auto& [name, value] : told_) status.add(name, value());
   for (const auto& [cause, count] : dropped_) status.add("dropped: " + cause, count);
 }
 

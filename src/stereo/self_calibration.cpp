@@ -46,11 +46,13 @@ float sample(const cv::Mat1f& image, double x, double y) {
          down * ((1 - right) * below[0] + right * below[1]);
 }
 
-// Far enough inside for samples of the window, their gradients and the pixels between which they lie.
-bool isInside(const cv::Mat1f& image, const Eigen::Vector2d& middle) {
-  constexpr double kMargin = kReach_px + kLargestStep_px + 3;
-  return middle.x() >= kMargin && middle.y() >= kMargin && middle.x() < image.cols - kMargin &&
-         middle.y() < image.rows - kMargin;
+// Far enough inside for the samples of a window around it, their gradients and the pixels between which they
+// lie.
+bool isInside(const cv::Mat1f& image, const cv::Point2d& shift, const Eigen::Vector2d& middle) {
+  const double reach_u = kReach_px + kLargestStep_px * std::abs(shift.x) + 2,
+               reach_v = kReach_px + kLargestStep_px * std::abs(shift.y) + 2;
+  return middle.x() >= reach_u && middle.y() >= reach_v && middle.x() < image.cols - 1 - reach_u &&
+         middle.y() < image.rows - 1 - reach_v;
 }
 
 bool isOneSurface(const Disparity& answer, cv::Point middle) {
@@ -132,9 +134,9 @@ void SelfCalibration::sumDifferences(const Disparity& answer, cv::Point middle, 
     const View& view = views_[i];
     const auto first = static_cast<Eigen::Index>(2 * i), turn = static_cast<Eigen::Index>(3 * i);
     const cv::Point2d at = cv::Point2d(middle) + answer.disparity_px(middle) * view.shift;
-    if (!isInside(*view.image, vectorOf(at))) continue;
     const Turning by_turns = movedByTurns(answer.rig, at);
     const Eigen::Vector2d moved_px = by_turns * turns_px_.segment<3>(turn);
+    if (!isInside(*view.image, view.shift, vectorOf(at) + moved_px)) continue;
 
     constexpr int kEdge_px = 2 * kReach_px + 1, kPixels = kEdge_px * kEdge_px;
     std::array<Eigen::Vector3d, kPixels> pixels;  // gradient and difference
@@ -213,7 +215,7 @@ void SelfCalibration::correct(const StereoImages& images, Disparity& answer) {
   if (turns_px_.isZero(0)) return;
   const TrinocularRig& rig = answer.rig;
   const AlongBaseline right(rig, rig.right_shift, turns_px_.head<3>()),
-      third(rig, rig.top_shift.value_or(cv::Point2d(0, 0)), turns_px_.tail<3>());
+      third(rig, rig.top_shift.value_or(cv::Point2d(0, 0)), turns_px_.tail<3>());  // no baseline, no say
   for (int y = 0; y < answer.disparity_px.rows; ++y) {
     float* disparities_px = answer.disparity_px[y];
     for (int x = 0; x < answer.disparity_px.cols; ++x) {

@@ -40,19 +40,27 @@ TEST(FrameGraphCosts, OdometryStepHasTrueDerivativesAndIsZeroAtItsOwnStep) {
   ceres::AutoDiffCostFunction<OdometryStepCost, 3, 3, 3, 3> cost(
       new OdometryStepCost(step, {0.01, 0.02, 0.003}));
   expectTrueGradient(cost, {{1, 2, 0.4}, {1.2, 2.1, 0.55}, {0.02, 0.01, -0.03}});
-  // A step in a hundred parts, of which the odometry's heading lost a hundredth each.
   const double drift = 0.01 * 0.25 - 0.03 * 0.1;
-  const Pose2 from{1, 2, 0.4};
-  Eigen::Vector2d way(0, 0);
-  for (int i = 0; i < 100; ++i)
-    way += Pose2{0, 0, -drift * (i + 0.5) / 100}.rotation() * Eigen::Vector2d(0.25, 0.01) * (0.98 / 100);
-  const Pose2 to = from * Pose2{way.x(), way.y(), 0.1 - drift};
+  const Eigen::Vector2d way = 0.98 * (Pose2{0, 0, -0.5 * drift}.rotation() * step.translation());
+  const Pose2 from{1, 2, 0.4}, to = from * Pose2{way.x(), way.y(), 0.1 - drift};
   const double earlier[] = {from.x_m, from.y_m, from.yaw_rad}, later[] = {to.x_m, to.y_m, to.yaw_rad};
   const double rates[] = {0.02, 0.01, -0.03};
   const double* blocks[] = {earlier, later, rates};
   double residuals[3] = {NAN, NAN, NAN};
   ASSERT_TRUE(cost.Evaluate(blocks, residuals, nullptr));
-  for (const double residual : residuals) EXPECT_NEAR(residual, 0, 1e-5);
+  for (const double residual : residuals) EXPECT_NEAR(residual, 0, 1e-9);
+}
+
+// The robot drives straight; at each of a hundred parts odometry believes to have turned a little.
+TEST(FrameGraphCosts, HeadingThatIsLostAlongAStepTurnsIt) {
+  Pose2 step;
+  for (int i = 0; i < 100; ++i) step = step * Pose2{0.004, 0, 0.0004};
+  const OdometryStepCost cost(step, {0.01, 0.01, 0.01});
+  const double earlier[] = {0, 0, 0}, later[] = {0.4, 0, 0}, rates[] = {0, 0.1, 0};
+  double residuals[3] = {NAN, NAN, NAN};
+  ASSERT_TRUE(cost(earlier, later, rates, residuals));
+  EXPECT_NEAR(residuals[1], 0, 0.01);  // 0.8 if the step were taken as straight
+  for (const double residual : residuals) EXPECT_LT(std::abs(residual), 0.02);
 }
 
 TEST(FrameGraphCosts, PriorHasTrueDerivatives) {

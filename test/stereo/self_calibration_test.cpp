@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 
-#include <functional>
-
 #include "stereo/synthetic_views.h"
 
 namespace cornerstone {
@@ -98,35 +96,56 @@ TEST(SelfCalibration, LearnsNothingFromBareWalls) {
   EXPECT_GT(calibration.sigmas_px().minCoeff(), 0.08);
 }
 
-// Means over the image of what the answers are off by, before and after.
+struct Seen {
+  StereoImages images;
+  Disparity answer;
+};
+
+// A wall 6 px away, not yet corrected.
+Seen wallSeenBy(const Rig& rig) {
+  cv::RNG random(9);
+  const Texture texture({160, 120}, 1.5, 30, random);
+  Seen seen{turnedViewsOf(texture, {6, 0}, rig, random), {}};
+  seen.answer = StereoMatcher({}).match(seen.images, centred(rigOf(seen.images)));
+  return seen;
+}
+
 TEST(SelfCalibration, TakesTheOffsetOutOfTheAnswers) {
   const Rig rig{{0, 0.2, 0}, {0.2, 0, 0}};
   SelfCalibration calibration = afterSets(kSets, rig);
-  cv::RNG random(9);
-  const Texture texture({160, 120}, 1.5, 30, random);
-  const StereoImages images = turnedViewsOf(texture, {6, 0}, rig, random);
-  const Disparity as_matched = matched(images);
-  Disparity corrected = StereoMatcher({}).match(images, centred(rigOf(images)));
-  calibration.correct(images, corrected);
-  const auto offset = [](const Disparity& answer) {
-    return cv::mean(answer.disparity_px, answer.rejection == 0)[0] - 6;
-  };
-  EXPECT_GT(offset(as_matched), 0.2);
-  EXPECT_NEAR(offset(corrected), 0, 0.02);
+  Seen wall = wallSeenBy(rig);
+  const auto offset = [&] { return cv::mean(wall.answer.disparity_px, wall.answer.rejection == 0)[0] - 6; };
+  EXPECT_GT(offset(), 0.2);
+  calibration.correct(wall.images, wall.answer);
+  EXPECT_NEAR(offset(), 0, 0.02);
 }
 
 // What is as far as infinity once it is corrected has no answer, rather than one below zero.
 TEST(SelfCalibration, NoAnswerIsEverBelowZero) {
   const Rig rig{{0, 0.6, 0}, {0.6, 0, 0}};
   SelfCalibration calibration = afterSets(kSets, rig);
-  cv::RNG random(9);
-  const Texture texture({160, 120}, 1.5, 30, random);
-  const StereoImages images = turnedViewsOf(texture, {6, 0}, rig, random);
-  Disparity answer = StereoMatcher({}).match(images, centred(rigOf(images)));
-  answer.disparity_px.setTo(0.3, answer.disparity_px > 0);
-  calibration.correct(images, answer);
-  EXPECT_EQ(cv::countNonZero(answer.disparity_px > 0), 0);
-  EXPECT_EQ(cv::countNonZero(answer.rejection == 0), 0);
+  Seen wall = wallSeenBy(rig);
+  wall.answer.disparity_px.setTo(0.3, wall.answer.disparity_px > 0);
+  calibration.correct(wall.images, wall.answer);
+  EXPECT_EQ(cv::countNonZero(wall.answer.disparity_px > 0), 0);
+  EXPECT_EQ(cv::countNonZero(wall.answer.rejection == 0), 0);
+}
+
+// Windows of a third camera with four times the baseline, and turned as far as it goes, reach farther.
+TEST(SelfCalibration, LooksAtNothingOutsideTheImages) {
+  SelfCalibration calibration = afterSets(kSets, {{0.9, 0.9, -0.9}, {-0.9, 0.9, 0.9}});
+  Seen wall = wallSeenBy({});
+  wall.answer.rig.top_shift = cv::Point2d(-4, 0);
+  for (int x = 0; x < wall.answer.disparity_px.cols; ++x)
+    wall.answer.disparity_px.col(x).setTo(1 + x % 2 * 0.9);
+  wall.answer.rejection.setTo(0);
+  for (int i = 0; i < 100; ++i) {
+    Disparity answer = wall.answer;
+    answer.disparity_px = wall.answer.disparity_px.clone();
+    calibration.correct(wall.images, answer);
+    ASSERT_TRUE(calibration.turns_px().allFinite());
+    ASSERT_TRUE(cv::checkRange(answer.disparity_px));
+  }
 }
 
 }  // namespace

@@ -19,7 +19,6 @@
 namespace cornerstone {
 
 struct PipelineParams {
-  bool self_calibration = true;
   StereoParams stereo;
   ScanParams scan;
   MapperParams mapper;

@@ -3,8 +3,10 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 
+#include <functional>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace cornerstone {
 
@@ -16,8 +18,8 @@ class StageDiagnostics {
   void dropped(const std::string& cause);
   // Something that is wrong as long as it is not cleared by an empty text.
   void complain(const std::string& complaint) { complaint_ = complaint; }
-  // A value beside the counts, until it is told anew.
-  void tell(const std::string& name, const std::string& value) { told_[name] = value; }
+  // A value beside the counts, asked for at each report.
+  void tell(const std::string& name, std::function<std::string()> value) { told_[name] = std::move(value); }
 
  private:
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -30,7 +32,7 @@ class StageDiagnostics {
   double longest_s_ = 0;
   std::map<std::string, unsigned> dropped_;
   std::map<std::string, ros::WallTime> logged_;
-  std::map<std::string, std::string> told_;
+  std::map<std::string, std::function<std::string()>> told_;
   std::string complaint_;
 };
 

@@ -56,7 +56,7 @@ class SelfCalibration {
   Information information_;
   Turns turns_px_ = Turns::Zero();
   std::array<cv::Mat1f, 3> smoothed_;
-  cv::Mat1f grey_;  // kept, so that nothing is allocated look by look
+  cv::Mat1f grey_;  // kept for their memory
   std::array<View, 2> views_{};
   std::size_t view_count_ = 0;
   int sets_ = 0;   // since the last look
