@@ -131,22 +131,5 @@ TEST(SelfCalibration, NoAnswerIsEverBelowZero) {
   EXPECT_EQ(cv::countNonZero(wall.answer.rejection == 0), 0);
 }
 
-// Windows of a third camera with four times the baseline, and turned as far as it goes, reach farther.
-TEST(SelfCalibration, LooksAtNothingOutsideTheImages) {
-  SelfCalibration calibration = afterSets(kSets, {{0.9, 0.9, -0.9}, {-0.9, 0.9, 0.9}});
-  Seen wall = wallSeenBy({});
-  wall.answer.rig.top_shift = cv::Point2d(-4, 0);
-  for (int x = 0; x < wall.answer.disparity_px.cols; ++x)
-    wall.answer.disparity_px.col(x).setTo(1 + x % 2 * 0.9);
-  wall.answer.rejection.setTo(0);
-  for (int i = 0; i < 100; ++i) {
-    Disparity answer = wall.answer;
-    answer.disparity_px = wall.answer.disparity_px.clone();
-    calibration.correct(wall.images, answer);
-    ASSERT_TRUE(calibration.turns_px().allFinite());
-    ASSERT_TRUE(cv::checkRange(answer.disparity_px));
-  }
-}
-
 }  // namespace
 }  // namespace cornerstone
