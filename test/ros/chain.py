@@ -126,6 +126,7 @@ class Diagnostics:
     def __init__(self):
         self.lock = threading.Lock()
         self.newest = {}
+        self.reports = {}  # how many have come
         self.complaints = {}  # every summary ever seen at level ERROR
         self.subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._take, queue_size=100)
 
@@ -135,6 +136,7 @@ class Diagnostics:
                 node = "/" + status.name.split(":")[0].strip("/")
                 values = {value.key: value.value for value in status.values}
                 self.newest[node] = dict(values, message=status.message, level=status.level)
+                self.reports[node] = self.reports.get(node, 0) + 1
                 if status.level == 2:
                     self.complaints.setdefault(node, set()).add(status.message)
 
@@ -153,6 +155,20 @@ class Diagnostics:
 
     def count(self, node, key):
         return int(float(self.of(node).get(key, 0)))
+
+    def settled(self, node, keys):
+        """The counts when two reports in a row agree: all that was played has come in, however busy the machine."""
+        counts = []
+
+        def agree():
+            with self.lock:
+                number, report = self.reports.get(node, 0), self.newest.get(node, {})
+            if not counts or counts[-1][0] != number:
+                counts.append((number, [int(float(report.get(key, 0))) for key in keys]))
+            # The first report may be of before; the two after it are of now.
+            return len(counts) > 2 and counts[-1][1] == counts[-2][1]
+        wait_until(agree, f"{node} to settle", 60)
+        return counts[-1][1]
 
 
 class Pose2:

@@ -3,7 +3,6 @@
 import copy
 import os
 import tempfile
-import time
 import unittest
 
 import rosbag
@@ -55,10 +54,6 @@ def nan_odometry(topic, message):
     return message
 
 
-# Diagnostics come once a second: a report may lack the last ten scans of a recording of 120.
-LATE_SCANS = 15
-
-
 class Faults(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -99,14 +94,14 @@ class Faults(unittest.TestCase):
         self.play(self.bag)
         first = self.epochs()
         self.assertEqual(len(set(first)), 1)
-        mapped = self.diagnostics.count("/a/mapper", "processed")
+        mapped, _ = self.settled()
         self.play(self.bag)
         after = self.epochs()[len(first):]
         # The last report of the first time may still come; then there is one new map, which goes on growing.
         self.assertEqual(len(set(after) - set(first)), 1)
         self.assertEqual(after[-1], max(after))
         self.assertGreater(len([epoch for epoch in after if epoch == after[-1]]), 3)
-        self.assertGreater(self.diagnostics.count("/a/mapper", "processed"), 1.5 * mapped)
+        self.assertGreater(self.settled()[0], 1.5 * mapped)
         self.assertGreater(self.occupied_cells(), 50)
 
     def test_2_maps_are_saved_loaded_and_reset(self):
@@ -132,31 +127,25 @@ class Faults(unittest.TestCase):
             self.assertTrue("/nowhere/map" in answer.message or "finite" in answer.message, answer.message)
         self.assertEqual(self.occupied_cells(), cells)
 
-    def settled(self, key):
-        """The count when two reports in a row agree: what an earlier play left under way has come in."""
-        count, deadline = None, time.monotonic() + 15
-        while time.monotonic() < deadline:
-            before, count = count, self.diagnostics.count("/a/mapper", key)
-            if count == before:
-                break
-            time.sleep(1.5)
-        return count
+    def settled(self):
+        return self.diagnostics.settled("/a/mapper", ("processed", "dropped"))
 
     def test_4_scans_without_odometry_are_dropped_and_counted(self):
-        before = self.settled("dropped"), self.settled("processed")
+        processed, dropped = self.settled()
         self.play_changed(without_odometry)
         # What odometry of the play before had left in tf ended with it.
-        after = self.diagnostics.count("/a/mapper", "dropped"), self.diagnostics.count("/a/mapper", "processed")
-        self.assertGreater(after[0], before[0] + 20)
-        self.assertLess(after[1], before[1] + LATE_SCANS)
+        after = self.settled()
+        self.assertEqual(after[0], processed)
+        self.assertGreater(after[1], dropped + 20)
         causes = [key for key in self.diagnostics.of("/a/mapper") if key.startswith("dropped: ")]
         self.assertTrue(any("a/odom -> a/base_link" in cause for cause in causes), causes)
 
     def test_5_odometry_that_is_nan_is_no_odometry(self):
-        before, dropped = self.settled("processed"), self.settled("dropped")
+        processed, dropped = self.settled()
         self.play_changed(nan_odometry)
-        self.assertLess(self.diagnostics.count("/a/mapper", "processed"), before + LATE_SCANS)
-        self.assertGreater(self.diagnostics.count("/a/mapper", "dropped"), dropped + 20)
+        after = self.settled()
+        self.assertEqual(after[0], processed)
+        self.assertGreater(after[1], dropped + 20)
 
     def complaint_about(self, set_fields):
         disparities = len(self.recorder.of("/a/disparity"))

@@ -26,7 +26,7 @@ class StageDiagnostics {
 
   std::string name_;
   diagnostic_updater::Updater updater_;
-  ros::Timer timer_;
+  ros::SteadyTimer timer_;
   unsigned processed_ = 0;
   double busy_s_ = 0;
   double longest_s_ = 0;
