@@ -11,8 +11,8 @@ StageDiagnostics::StageDiagnostics(ros::NodeHandle node, ros::NodeHandle private
     : name_(private_node.getNamespace()), updater_(node, private_node, name_) {
   updater_.setHardwareID("none");
   updater_.add(stage, this, &StageDiagnostics::report);
-  // By the steady clock: a stage tells of itself when simulated time stands still, too. Forced: update() keeps
-  // a time of its own and would be silent after a jump back in time.
+  // By the steady clock: a stage tells of itself when simulated time stands still, too. Forced: update()
+  // keeps a time of its own and would be silent after a jump back in time.
   timer_ = node.createSteadyTimer(ros::WallDuration(1.0),
                                   [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
 }
