@@ -48,7 +48,7 @@ struct ScanParams {
   // Of it, what a rig gets wrong in every look alike (scan_calibration.h): for rigs that calibrate themselves
   // (stereo/self_calibration.h) a hundredth of a pixel or two, else 0.05 to 0.1. The mapper looks for no
   // more.
-  double calibration_sigma_px = 0.02;
+  double calibration_sigma_px = 0.01;
   double min_range_m = 0.2;  // from the camera; nearer answers are mismatches
   // Points within this radius of the base's origin are the robot's own body (bumper, mast, payload).
   double body_radius_m = 0.2;

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 #include "cornerstone/stereo/disparity.h"
@@ -48,7 +49,8 @@ class SelfCalibration {
   };
   struct Window;
 
-  void look(const StereoImages& images, const Disparity& answer);
+  void look(const StereoImages& images, const Disparity& answer, double full_share);
+  double novelty();
   void smooth(const StereoImages& images, const TrinocularRig& rig);
   void addWindow(const Disparity& answer, cv::Point middle, Evidence& evidence) const;
   void sumDifferences(const Disparity& answer, cv::Point middle, Window& window) const;
@@ -59,8 +61,9 @@ class SelfCalibration {
   cv::Mat1f grey_;  // kept for their memory
   std::array<View, 2> views_{};
   std::size_t view_count_ = 0;
-  int sets_ = 0;   // since the last look
-  int looks_ = 0;  // where the next look's windows begin
+  cv::Mat1f last_seen_;
+  std::uint64_t sets_ = 0;  // since the start
+  int looks_ = 0;           // where the next look's windows begin
 };
 
 }  // namespace cornerstone
