@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace cornerstone {
@@ -12,7 +13,7 @@ namespace {
 // Of each turn before anything is known: calibrations by boards leave half of it. With half, 40 looks know
 // the offset to 0.008 px instead of 0.007.
 constexpr double kPrior_px = 0.2;
-constexpr int kPeriod_sets = 5;       // with the corrections a fifth of a match at 160x120
+constexpr int kPeriod_sets = 5;  // with the corrections a fifth of a match at 160x120
 // A map's first metres are drawn by what the first looks know: as long as every set is looked at. Twenty
 // seconds after the start the offset is then known to 0.008 px instead of 0.012.
 constexpr int kYoung_sets = 100;
@@ -69,36 +70,59 @@ bool isOneSurface(const Disparity& answer, cv::Point middle) {
   return true;
 }
 
+using Floats = cv::v_float32;
+
+Floats floatsOf(double value) { return cv::vx_setall_f32(static_cast<float>(value)); }
+
 // What the turns of a camera move along its baseline: a polynomial over the image.
 class AlongBaseline {
  public:
   AlongBaseline(const TrinocularRig& rig, const cv::Point2d& shift, const Eigen::Vector3d& turns_px)
-      : rig_(rig),
-        shift_(shift),
-        weight_(shift.dot(shift)),
-        constant_(shift.y * turns_px.x() - shift.x * turns_px.y()),
-        x_(-shift.y * turns_px.z()),
-        y_(shift.x * turns_px.z()),
-        xx_(-shift.x * turns_px.y()),
-        yy_(shift.y * turns_px.x()),
-        xy_(shift.x * turns_px.x() - shift.y * turns_px.y()) {}
+      : shift_x_(floatsOf(shift.x)),
+        shift_y_(floatsOf(shift.y)),
+        weight_(floatsOf(shift.dot(shift))),
+        centre_x_px_(floatsOf(rig.centre_x_px)),
+        centre_y_px_(floatsOf(rig.centre_y_px)),
+        per_px_(floatsOf(1 / rig.focal_px)),
+        last_x_px_(floatsOf(rig.image_size_px.width - 1)),
+        last_y_px_(floatsOf(rig.image_size_px.height - 1)),
+        constant_(floatsOf(shift.y * turns_px.x() - shift.x * turns_px.y())),
+        x_(floatsOf(-shift.y * turns_px.z())),
+        y_(floatsOf(shift.x * turns_px.z())),
+        xx_(floatsOf(-shift.x * turns_px.y())),
+        yy_(floatsOf(shift.y * turns_px.x())),
+        xy_(floatsOf(shift.x * turns_px.x() - shift.y * turns_px.y())) {}
 
   struct Share {
-    double moved = 0, weight = 0;  // moved / weight: px of disparity
+    Floats moved, weight;  // moved / weight: px of disparity
   };
   // Nothing where the camera does not see the pixel.
-  Share of(cv::Point pixel, double disparity_px) const {
-    const double u = pixel.x + disparity_px * shift_.x, v = pixel.y + disparity_px * shift_.y;
-    if (u < 0 || v < 0 || u > rig_.image_size_px.width - 1 || v > rig_.image_size_px.height - 1) return {};
-    const double x = (u - rig_.centre_x_px) / rig_.focal_px, y = (v - rig_.centre_y_px) / rig_.focal_px;
-    return {constant_ + x * (x_ + xx_ * x + xy_ * y) + y * (y_ + yy_ * y), weight_};
+  Share of(const Floats& x_px, const Floats& y_px, const Floats& disparities_px) const {
+    const Floats u = x_px + disparities_px * shift_x_, v = y_px + disparities_px * shift_y_;
+    const Floats x = (u - centre_x_px_) * per_px_, y = (v - centre_y_px_) * per_px_;
+    const Floats moved = constant_ + x * (x_ + xx_ * x + xy_ * y) + y * (y_ + yy_ * y);
+    const Floats zero = cv::vx_setzero_f32();
+    const Floats seen = (u >= zero) & (v >= zero) & (u <= last_x_px_) & (v <= last_y_px_);
+    return {moved & seen, weight_ & seen};
   }
 
  private:
-  const TrinocularRig& rig_;
-  cv::Point2d shift_;
-  double weight_, constant_, x_, y_, xx_, yy_, xy_;
+  Floats shift_x_, shift_y_, weight_, centre_x_px_, centre_y_px_, per_px_, last_x_px_, last_y_px_;
+  Floats constant_, x_, y_, xx_, yy_, xy_;
 };
+
+// Takes out of a vector's disparities what the turns have put in; where there is no answer they stay 0.
+void correctVector(const AlongBaseline& right, const AlongBaseline& third, const cv::Point2f& first_px,
+                   float* disparities_px) {
+  static const std::array<float, 16> kCounting{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Floats before = cv::vx_load(disparities_px), zero = cv::vx_setzero_f32();
+  const Floats x = cv::vx_setall_f32(first_px.x) + cv::vx_load(kCounting.data()),
+               y = cv::vx_setall_f32(first_px.y);
+  const auto by_right = right.of(x, y, before), by_third = third.of(x, y, before);
+  const Floats weight = by_right.weight + by_third.weight;
+  const Floats off = (by_right.moved + by_third.moved) / cv::v_select(weight > zero, weight, floatsOf(1));
+  cv::v_store(disparities_px, (before - off) & (before > zero));
+}
 
 }  // namespace
 
@@ -236,16 +260,21 @@ void SelfCalibration::correct(const StereoImages& images, Disparity& answer) {
   const TrinocularRig& rig = answer.rig;
   const AlongBaseline right(rig, rig.right_shift, turns_px_.head<3>()),
       third(rig, rig.top_shift.value_or(cv::Point2d(0, 0)), turns_px_.tail<3>());  // no baseline, no say
+  constexpr int kLanes = Floats::nlanes;
+  const int width = answer.disparity_px.cols, rest = width % kLanes;
   for (int y = 0; y < answer.disparity_px.rows; ++y) {
     float* disparities_px = answer.disparity_px[y];
-    for (int x = 0; x < answer.disparity_px.cols; ++x) {
-      if (!(disparities_px[x] > 0)) continue;
-      const auto by_right = right.of({x, y}, disparities_px[x]),
-                 by_third = third.of({x, y}, disparities_px[x]);
-      const double weight = by_right.weight + by_third.weight;
-      if (weight > 0) disparities_px[x] -= static_cast<float>((by_right.moved + by_third.moved) / weight);
-      if (!(disparities_px[x] > 0)) reject(answer, {x, y}, Rejection::kRange);
+    for (int x = 0; x < width - rest; x += kLanes)
+      correctVector(right, third, cv::Point(x, y), disparities_px + x);
+    if (rest > 0) {
+      std::array<float, kLanes> last{};
+      std::copy_n(disparities_px + width - rest, rest, last.begin());
+      correctVector(right, third, cv::Point(width - rest, y), last.data());
+      std::copy_n(last.begin(), rest, disparities_px + width - rest);
     }
+    const std::uint8_t* rejections = answer.rejection[y];
+    for (int x = 0; x < width; ++x)
+      if (rejections[x] == 0 && !(disparities_px[x] > 0)) reject(answer, {x, y}, Rejection::kRange);
   }
 }
 

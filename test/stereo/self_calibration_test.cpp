@@ -136,6 +136,24 @@ TEST(SelfCalibration, TakesTheOffsetOutOfTheAnswers) {
   EXPECT_NEAR(offset(), 0, 0.02);
 }
 
+// Also where a row is no whole number of the processor's vectors.
+TEST(SelfCalibration, CorrectsImagesOfAnyWidth) {
+  const Rig rig{{0, 0.2, 0}, {0.2, 0, 0}};
+  const SelfCalibration learned = afterSets(kSets, rig);
+  for (const int width : {158, 157, 3}) {
+    Seen whole = wallSeenBy(rig), narrow = whole;
+    const cv::Rect part(0, 0, width, 120);
+    for (cv::Mat1b* image : {&narrow.images.reference, &narrow.images.right, &narrow.images.top})
+      *image = (*image)(part).clone();
+    narrow.answer.disparity_px = narrow.answer.disparity_px(part).clone();
+    narrow.answer.rejection = narrow.answer.rejection(part).clone();
+    narrow.answer.rig.image_size_px = part.size();
+    SelfCalibration(learned).correct(whole.images, whole.answer);
+    SelfCalibration(learned).correct(narrow.images, narrow.answer);
+    EXPECT_LT(cv::norm(whole.answer.disparity_px(part), narrow.answer.disparity_px, cv::NORM_INF), 0.005);
+  }
+}
+
 // What is as far as infinity once it is corrected has no answer, rather than one below zero.
 TEST(SelfCalibration, NoAnswerIsEverBelowZero) {
   const Rig rig{{0, 0.6, 0}, {0.6, 0, 0}};
