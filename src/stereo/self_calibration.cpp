@@ -14,8 +14,9 @@ namespace {
 // the offset to 0.008 px instead of 0.007.
 constexpr double kPrior_px = 0.2;
 constexpr int kPeriod_sets = 5;  // with the corrections a fifth of a match at 160x120
-// A map's first metres are drawn by what the first looks know: as long as every set is looked at. Twenty
-// seconds after the start the offset is then known to 0.008 px instead of 0.012.
+// A map's first metres are drawn by what the first looks know: as long every set is looked at. The offset of
+// eight tours is then known to 0.012 px after 50 sets and to 0.011 px after 100, without it to 0.019 and
+// 0.013 px; as long as 40 sets 0.013 and 0.012, always 0.010 and 0.009.
 constexpr int kYoung_sets = 100;
 constexpr int kReach_px = 3;          // windows of 7 x 7
 constexpr int kWindows = 300;         // in a grid over the image, elsewhere at each look
@@ -25,7 +26,8 @@ constexpr double kWindowFloor_px = 0.05;
 constexpr double kLeastVariance_grey2 = 1;  // of the differences: no camera is quieter after smoothing
 constexpr double kCorrelated_px = 7;        // that share noise after smoothing
 // Looks half a second apart see nearly the same and err alike: one of them counts as a fourth, and a tenth
-// of a second apart as a tenth.
+// of a second apart as a tenth. With half of that errors are 0.8 of what they are believed to be, with 0.25
+// 1.7 times.
 constexpr double kLookShare = 0.25, kYoungLookShare = 0.1;
 // Of what is known, from look to look: rigs warm up. It lasts 8 minutes at 10 Hz.
 constexpr double kKept = 1 - 1.0 / 1000;
