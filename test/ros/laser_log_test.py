@@ -41,8 +41,9 @@ class LaserLog(unittest.TestCase):
             player.stop()
 
     def test_no_scan_is_lost(self):
-        self.assertGreaterEqual(self.diagnostics.count("/a/mapper", "processed"), 220)  # of 225; the first wait for odometry
-        self.assertLessEqual(self.diagnostics.count("/a/mapper", "dropped"), 2)
+        processed, dropped = self.diagnostics.settled("/a/mapper", ("processed", "dropped"))
+        self.assertGreaterEqual(processed, 220)  # of 225; the first wait for odometry
+        self.assertLessEqual(dropped, 2)
 
     def test_walls_are_straight(self):
         grid = followed(self.recorder.of("/a/map"), self.recorder.of("/a/map_updates"))

@@ -43,7 +43,7 @@ class Levels(unittest.TestCase):
         first, again = self.seen("/a/map"), self.seen("/a/map/obstacles")
         self.assertGreater(first.count(), 100)
         self.assertTrue((first.occupied == again.occupied).all())
-        self.assertEqual(self.diagnostics.count("/a/mapper", "dropped"), 0)
+        self.assertEqual(self.diagnostics.settled("/a/mapper", ("dropped",)), [0])
 
     def test_the_walls_near_the_ceiling_stand_where_those_below_do(self):
         below, above = self.seen("/a/map"), self.seen("/a/map/ceiling")
