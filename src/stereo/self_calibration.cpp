@@ -13,7 +13,7 @@ namespace {
 // Of each turn before anything is known: calibrations by boards leave half of it. With half, 40 looks know
 // the offset to 0.008 px instead of 0.007.
 constexpr double kPrior_px = 0.2;
-constexpr int kPeriod_sets = 5;  // with the corrections a fifth of a match at 160x120
+constexpr int kPeriod_sets = 5;  // with the corrections a seventh of a match at 160x120
 // A map's first metres are drawn by what the first looks know: as long every set is looked at. The offset of
 // eight tours is then known to 0.012 px after 50 sets and to 0.011 px after 100, without it to 0.019 and
 // 0.013 px; as long as 40 sets 0.013 and 0.012, always 0.010 and 0.009.
