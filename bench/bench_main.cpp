@@ -1,6 +1,7 @@
 // All parts, as Markdown on standard output; scripts/bench.sh makes bench/RESULTS.md of it.
 // usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]
-//        cornerstone_bench --tours N    the long tours alone, N seeds a world
+//        cornerstone_bench --tours N       the long tours alone, N seeds a world
+//        cornerstone_bench --meetings N    the robots that meet alone, N seeds a world
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -19,11 +20,14 @@ int main(int argc, char** argv) {
     seeds = std::atoi(words[1].c_str());
     words.erase(words.begin(), words.begin() + 2);
   }
-  int tours = 0;
-  if (words.size() == 2 && words[0] == "--tours") {
-    tours = std::atoi(words[1].c_str());
-    words.erase(words.begin(), words.begin() + (tours > 0 ? 2 : 0));
-  }
+  // The seeds of a part that was asked for alone; 0: it was not.
+  const auto aloneSeeds = [&](const std::string& part) {
+    if (words.size() != 2 || words[0] != part) return 0;
+    const int wanted = std::atoi(words[1].c_str());
+    if (wanted > 0) words.clear();
+    return wanted;
+  };
+  const int tours = aloneSeeds("--tours"), meetings = aloneSeeds("--meetings");
   const auto is_sets = std::find(words.begin(), words.end(), "--stereo-sets");
   if (is_sets != words.end()) folders.assign(is_sets + 1, words.end());
   words.erase(is_sets, words.end());
@@ -31,7 +35,8 @@ int main(int argc, char** argv) {
   if (!words.empty() && !stereo_only) {
     std::fputs(
         "usage: cornerstone_bench [--seeds N] [--stereo-only] [--stereo-sets FOLDER...]\n"
-        "       cornerstone_bench --tours N\n",
+        "       cornerstone_bench --tours N\n"
+        "       cornerstone_bench --meetings N\n",
         stderr);
     return 2;
   }
@@ -39,6 +44,10 @@ int main(int argc, char** argv) {
     if (tours > 0) {
       cornerstone::bench::toursPart(tours);
       cornerstone::bench::scanFitPart();
+      return 0;
+    }
+    if (meetings > 0) {
+      cornerstone::bench::registrationMeetingPart(meetings);
       return 0;
     }
     cornerstone::bench::stereoPart();

@@ -30,6 +30,7 @@ namespace {
 
 // Odometry that claims more has gone astray; cells are counted in 32 bits and MRPT's in floats.
 constexpr double kFarthest_m = 5000;
+constexpr double kWaySquare_m = 0.2;  // of a way: a robot's radius
 
 void requireSane(const Pose2& odom_from_base) {
   if (!odom_from_base.isFinite()) throw InputError("odometry: odom_from_base is not finite");
@@ -104,6 +105,7 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
   if (insert) {
     current().insert(scan, filter_.pose().map_from_base, motion());
     last_inserted_ = filter_.pose().map_from_base;
+    if (!remembers) notePlace();
   }
   if (remembers) straighten();
   map_from_odom_ = filter_.pose().map_from_base * odom_from_base.inverse();
@@ -150,6 +152,29 @@ void Mapper::goOnAt(const PoseEstimate& found, const Pose2& odom_from_base) {
   filter_.place(found);
   found_map_from_odom_.reset();
   ++slips_;
+}
+
+void Mapper::notePlace() {
+  const Eigen::Vector2d at = last_inserted_->translation();
+  if (places_.empty() || (places_.back() - at).norm() > kWaySquare_m) places_.push_back(at);
+}
+
+std::vector<Eigen::Vector2d> Mapper::way() const {
+  std::vector<Eigen::Vector2d> way = places_;
+  for (const KeyFrame& frame : graph_.frames()) way.push_back(frame.map_from_base.translation());
+  if (last_inserted_) way.push_back(last_inserted_->translation());
+  const auto squareOf = [](const Eigen::Vector2d& at) {
+    return std::pair(std::floor(at.x() / kWaySquare_m), std::floor(at.y() / kWaySquare_m));
+  };
+  std::stable_sort(way.begin(), way.end(), [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return squareOf(a) < squareOf(b);
+  });
+  way.erase(std::unique(way.begin(), way.end(),
+                        [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+                          return squareOf(a) == squareOf(b);
+                        }),
+            way.end());
+  return way;
 }
 
 void Mapper::remember(const RangeScan& scan, const Pose2& odom_from_base) {
@@ -200,6 +225,7 @@ void Mapper::reset() {
   last_odom_.reset();
   start_.reset();
   last_inserted_.reset();
+  places_.clear();
   contradictions_ = 0;
   found_map_from_odom_.reset();
   place_ = Place::kAsFitted;

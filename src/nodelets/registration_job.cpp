@@ -9,7 +9,9 @@ namespace cornerstone {
 RegistrationFindings run(RegistrationJob job, MapRegistrar& registrar) {
   const ros::WallTime start = ros::WallTime::now();
   job.task.current = job.own.map();
+  job.task.current_way_m = job.own.way();
   if (!job.robot.empty()) job.task.reference = job.other.map();
+  job.task.reference_way_m = job.other.way();
   RegistrationFindings found;
   found.attempt = registrar.attempt(job.task);
   if (job.merge_into) {

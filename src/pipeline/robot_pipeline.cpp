@@ -29,7 +29,8 @@ std::optional<Registration> registerRobots(const RobotPipeline& reference, const
   const GridMap reference_map = reference.map(), current_map = current.map();
   const Landmarks reference_landmarks = reference.landmarks(), current_landmarks = current.landmarks();
   RegistrationOutcome outcome =
-      registerMaps({reference_map, reference_landmarks}, {current_map, current_landmarks}, {}, params);
+      registerMaps({reference_map, reference_landmarks, reference.mapper().way()},
+                   {current_map, current_landmarks, current.mapper().way()}, {}, params);
   if (refusal != nullptr) *refusal = outcome.refusal;
   return std::move(outcome.registration);
 }

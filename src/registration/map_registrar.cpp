@@ -5,10 +5,11 @@ namespace cornerstone {
 MapRegistrar::MapRegistrar(const LandmarkParams& landmarks, const RegistrationParams& registration)
     : landmark_params_(landmarks), params_(registration), current_{LandmarkFollower(landmarks), {}} {}
 
-void MapRegistrar::Side::update(const GridMap& map, double time_s, const RegistrationParams& params) {
-  follower.update(map, time_s);
+void MapRegistrar::Side::update(const MapNews& news, const RegistrationParams& params) {
+  follower.update(news.map, news.time_s);
   if (!evidence || follower.searchedShare() > 0)
-    evidence = gatherEvidence({map, follower.landmarks()}, params);
+    evidence = gatherEvidence({news.map, follower.landmarks()}, params);
+  evidence->way_m = news.way_m;
 }
 
 RegistrationOutcome MapRegistrar::registerIn(const Side& reference, const RegistrationHints& hints) const {
@@ -33,8 +34,8 @@ RegistrationAttempt MapRegistrar::attempt(const RegistrationTask& task) {
   Side& reference =
       references_.try_emplace(task.reference_robot, Side{LandmarkFollower(landmark_params_), {}})
           .first->second;
-  reference.update(*task.reference, task.time_s, params_);
-  current_.update(task.current, task.time_s, params_);
+  reference.update({*task.reference, task.reference_way_m, task.time_s}, params_);
+  current_.update({task.current, task.current_way_m, task.time_s}, params_);
   attempt.outcome = registerIn(reference, task.hints);
   attempt.landmarks = current_.follower.landmarks();
   if (attempt.outcome.registration)

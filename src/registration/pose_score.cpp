@@ -5,11 +5,9 @@
 #include <utility>
 
 namespace cornerstone {
-namespace {
 
-// The edges of one map on the grid of another.
-PoseScore scoreOn(const EvidenceGrid& grid, const EdgeSamples& samples, const Pose2& grid_from_samples,
-                  std::size_t max_samples) {
+PoseScore scoreSamples(const EvidenceGrid& grid, const EdgeSamples& samples, const Pose2& grid_from_samples,
+                       std::size_t max_samples) {
   const std::size_t count = std::min(samples.size(), max_samples);
   if (count == 0) return {};
   const Eigen::Matrix2f rotation = grid.squaresPerMetre() * grid_from_samples.rotation().cast<float>();
@@ -24,15 +22,13 @@ PoseScore scoreOn(const EvidenceGrid& grid, const EdgeSamples& samples, const Po
   return {sum.agree * scale, -sum.contradict * scale};
 }
 
-}  // namespace
-
 PoseScore scorePose(const EvidencePair& maps, const Pose2& reference_from_current, const Look& look) {
   const auto& [there, here] = maps;
   const bool coarse = look.level == ScoreLevel::kCoarse;
-  const PoseScore one =
-      scoreOn(coarse ? there.coarse : there.fine, here.samples, reference_from_current, look.max_samples);
-  const PoseScore other = scoreOn(coarse ? here.coarse : here.fine, there.samples,
-                                  reference_from_current.inverse(), look.max_samples);
+  const PoseScore one = scoreSamples(coarse ? there.coarse : there.fine, here.samples, reference_from_current,
+                                     look.max_samples);
+  const PoseScore other = scoreSamples(coarse ? here.coarse : here.fine, there.samples,
+                                       reference_from_current.inverse(), look.max_samples);
   return {0.5 * (one.agree + other.agree), 0.5 * (one.contradict + other.contradict)};
 }
 

@@ -12,6 +12,7 @@
 #include "cornerstone/registration/elastic_score.h"
 #include "cornerstone/registration/pose_search.h"
 #include "cornerstone/registration/proposals.h"
+#include "cornerstone/registration/robot_bodies.h"
 #include "cornerstone/registration/wall_search.h"
 
 namespace cornerstone {
@@ -82,12 +83,16 @@ void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const Reg
 }
 
 // Puts the hypotheses in the order of their elastic scores, best first, and returns the scores.
-std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence& here,
+std::vector<JudgedPose> judgeAndSort(const EvidencePair& maps, const RobotBodies& bodies,
                                      std::vector<Hypothesis>& hypotheses) {
   std::vector<std::pair<PoseScore, Hypothesis>> scored(hypotheses.size());
   cv::parallel_for_(cv::Range(0, static_cast<int>(scored.size())), [&](const cv::Range& range) {
-    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i)
-      scored[i] = {scoreElastic(there, here, hypotheses[i].reference_from_current, {}), hypotheses[i]};
+    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i) {
+      Hypothesis& h = hypotheses[i];
+      h.score = bodies.excused(h.score, h.reference_from_current);
+      const PoseScore elastic = scoreElastic(maps.reference, maps.current, h.reference_from_current, {});
+      scored[i] = {bodies.excused(elastic, h.reference_from_current), h};
+    }
   });
   std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) {
     return a.first.agree - a.first.contradict > b.first.agree - b.first.contradict;
@@ -102,7 +107,8 @@ std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence
 
 // The lead of the first pose where edges must meet closely: where maps do not bend, that parts a right pose
 // from one whose walls are only near.
-double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const RegistrationParams& params) {
+double closeLead(const EvidencePair& maps, const RobotBodies& bodies, std::vector<Hypothesis> poses,
+                 const RegistrationParams& params) {
   const auto closer = [&](const MapEvidence& map) {
     MapEvidence close = map;
     close.fine = EvidenceGrid(map.fine.counts(), map.edges, params.close_reach_m);
@@ -111,7 +117,7 @@ double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const 
   const MapEvidence there = closer(maps.reference), here = closer(maps.current);
   settlePoses({there, here}, poses, params);
   std::vector<PoseScore> scores;
-  for (const Hypothesis& h : poses) scores.push_back(h.score);
+  for (const Hypothesis& h : poses) scores.push_back(bodies.excused(h.score, h.reference_from_current));
   return leadOf(scores, params.fine_cell_m);
 }
 
@@ -163,7 +169,8 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
           middle,
           view.map.geometry.resolution_m,
           std::move(directions),
-          EdgeIndex(view.landmarks.edges, params.refine_reach_m / 3)};
+          EdgeIndex(view.landmarks.edges, params.refine_reach_m / 3),
+          view.way_m};
 }
 
 RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap& current,
@@ -176,7 +183,8 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
                                                    : propose(reference, current, params);
   std::vector<Hypothesis> best = searchPoses({there, here}, proposals, params);
   if (hints.prior) keepNear(best, *hints.prior, params);
-  const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
+  const RobotBodies bodies({there, here}, params.robot_radius_m);
+  const std::vector<JudgedPose> judged = judgeAndSort({there, here}, bodies, best);
   if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
   const auto refined =
       refine({there, here}, best.front().reference_from_current, refinementOptions(hints, params));
@@ -187,7 +195,7 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
       static_cast<double>(std::min(there.edges.size(), here.edges.size())) * params.fine_cell_m;
   evidence.with_prior = hints.prior.has_value();
   if (probabilityRight(evidence) < params.min_probability)
-    evidence.lead_sigmas = std::max(evidence.lead_sigmas, closeLead({there, here}, best, params));
+    evidence.lead_sigmas = std::max(evidence.lead_sigmas, closeLead({there, here}, bodies, best, params));
   if (const auto reason = reasonToRefuse(evidence, params)) return {{}, *reason};
 
   Registration registration;
@@ -231,6 +239,7 @@ void describe(ParamVisitor& visitor, RegistrationParams& params) {
   visitor.field("min_agreeing_small_map_m", params.min_agreeing_small_map_m);
   visitor.field("min_agreeing_with_prior_m", params.min_agreeing_with_prior_m);
   visitor.field("max_contradicting_share", params.max_contradicting_share);
+  visitor.field("robot_radius_m", params.robot_radius_m);
   visitor.field("min_spread", params.min_spread);
   visitor.field("min_probability", params.min_probability);
 }

@@ -1,5 +1,6 @@
 #include "cornerstone/ros/tile_follower.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -8,7 +9,21 @@
 
 namespace cornerstone {
 
+namespace {
+
+std::vector<Eigen::Vector2d> wayOf(const MapTiles& message) {
+  std::vector<Eigen::Vector2d> way_m;
+  for (const geometry_msgs::Point32& place : message.way) {
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) throw InputError("map_tiles: way is not finite");
+    way_m.emplace_back(place.x, place.y);
+  }
+  return way_m;
+}
+
+}  // namespace
+
 bool TileFollower::take(const MapTiles& message) {
+  std::vector<Eigen::Vector2d> way_m = wayOf(message);
   const bool anew = epoch_ && message.map_epoch != *epoch_;
   if (message.tiles.empty()) {
     if (!message.complete) throw InputError("map_tiles: no tiles");
@@ -23,6 +38,7 @@ bool TileFollower::take(const MapTiles& message) {
   }
   epoch_ = message.map_epoch;
   version_ = message.version;
+  way_m_ = std::move(way_m);
   return anew;
 }
 

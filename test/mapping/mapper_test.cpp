@@ -15,6 +15,12 @@ RangeScan lookFrom(const test::Room& room, const Pose2& pose, std::mt19937& rand
   return scanFromDisparity(disparityOf(room, pose, test::rigOf(160), {}, random), test::levelCamera(), {});
 }
 
+double distanceToWay(const Mapper& mapper, const Eigen::Vector2d& place_m) {
+  double nearest_m = 1e9;
+  for (const Eigen::Vector2d& at : mapper.way()) nearest_m = std::min(nearest_m, (at - place_m).norm());
+  return nearest_m;
+}
+
 // 48 m through officeRoom() with 3 % and 2 degrees a metre of drift: without correction the end is metres
 // off.
 TEST(Mapper, TakesMostOfTheDriftOutOfATour) {
@@ -41,6 +47,10 @@ TEST(Mapper, TakesMostOfTheDriftOutOfATour) {
   EXPECT_LT(std::abs(error.yaw_rad), 0.1);
   const Pose2 same = mapper.mapFromOdom() * steps.back().odom_from_base;
   EXPECT_NEAR(same.x_m, mapper.pose().map_from_base.x_m, 1e-9);
+  for (const auto& step : steps) {  // within a square and the distance between two frames, and the drift
+    const Pose2 truth = start.inverse() * step.map_from_base;
+    EXPECT_LT(distanceToWay(mapper, truth.translation()), 0.55 + worst_m);
+  }
 }
 
 // A box that went while the robot stood must not come back when the map is drawn anew, and the tiles that
@@ -83,6 +93,7 @@ TEST(Mapper, TruePosesGiveASharpMap) {
   Mapper mapper(params);
   for (const auto& step : steps)
     mapper.update(lookFrom(room, step.map_from_base, random), step.odom_from_base);
+  for (const auto& step : steps) EXPECT_LT(distanceToWay(mapper, step.odom_from_base.translation()), 0.5);
   const GridMap map = mapper.grid().snapshot();
   int occupied = 0, good = 0;
   for (int row = 0; row < map.geometry.rows; ++row)
@@ -127,11 +138,13 @@ TEST(Mapper, ResetBeginsANewEpochAndLoadGoesOnInASavedMap) {
   mapper.reset();
   EXPECT_TRUE(mapper.grid().empty());
   EXPECT_GT(mapper.epoch(), epoch);
+  EXPECT_TRUE(mapper.way().empty());
   mapper.load({saved}, at);
   EXPECT_EQ(mapper.grid().snapshot().occupied.size(), saved.occupied.size());
   mapper.update(lookFrom(room, at, random), {7, -4, 2});  // odometry starts anywhere
   EXPECT_NEAR(mapper.pose().map_from_base.x_m, at.x_m, 0.05);
   EXPECT_NEAR(mapper.pose().map_from_base.yaw_rad, at.yaw_rad, 0.03);
+  EXPECT_EQ(mapper.way().size(), 1u);
 }
 
 TEST(OdometryFilter, LearnsADriftFromPoses) {

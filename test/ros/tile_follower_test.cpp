@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cornerstone/base/errors.h"
 #include "cornerstone/ros/grid_messages.h"
 
@@ -52,6 +54,18 @@ TEST(TileFollower, AMapThatIsResetIsEmptyAtOnce) {
   EXPECT_FALSE(follower.empty());
 }
 
+TEST(TileFollower, KeepsTheNewestWay) {
+  TileFollower follower;
+  MapTiles message = tilesAt(0, 0.2f, 1, 1);
+  for (const std::size_t places : {3u, 2u}) {
+    message.way.resize(places);
+    message.way.back().x = 1.5f;
+    follower.take(message);
+    ASSERT_EQ(follower.way().size(), places);
+    EXPECT_EQ(follower.way().back(), Eigen::Vector2d(1.5, 0));
+  }
+}
+
 TEST(TileFollower, AMessageAtFaultChangesNothing) {
   TileFollower follower;
   follower.take(tilesAt(0, 0.2f, 1, 1));
@@ -62,6 +76,11 @@ TEST(TileFollower, AMessageAtFaultChangesNothing) {
   coarser.resolution = 0.2;
   EXPECT_THROW(follower.take(coarser), InputError);
   EXPECT_THROW(follower.take(MapTiles{}), InputError);
+  MapTiles astray = tilesAt(4, 0.2f, 1, 2);
+  astray.way.resize(1);
+  astray.way.front().y = std::nanf("");
+  EXPECT_THROW(follower.take(astray), InputError);
+  EXPECT_TRUE(follower.way().empty());
   EXPECT_EQ(follower.version(), 1u);
   EXPECT_EQ(follower.map().geometry.cols, 4);
 }

@@ -63,6 +63,8 @@ class Mapper {
   const OccupancyGrid& grid(std::size_t level = 0) const { return local_maps_.back().grid(level); }
   const Pose2& mapFromOdom() const { return map_from_odom_; }
   PoseEstimate pose() const { return filter_.pose(); }
+  // Where the robot has been in this epoch, m in the map's frame, a point in each square of 0.2 m.
+  std::vector<Eigen::Vector2d> way() const;
   const OdometryFilter& odometry() const { return filter_; }
   const FrameGraph& graph() const { return graph_; }
   std::uint32_t epoch() const { return epoch_; }
@@ -75,6 +77,7 @@ class Mapper {
   bool isDoubtful(const ScanFit& fit) const;
   Place seek(const RangeScan& scan, const Pose2& odom_from_base, const ScanFit& fit);
   void goOnAt(const PoseEstimate& found, const Pose2& odom_from_base);
+  void notePlace();
   void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
   void straighten();                                                  // the map, by what the graph knows
   void redraw();
@@ -93,9 +96,10 @@ class Mapper {
   std::optional<MapRedraw> redraw_;  // its last looks
   int redraws_ = 0;
   bool loaded_ = false;
-  std::optional<Pose2> last_odom_;      // odom_from_base of the last scan
-  std::optional<Pose2> start_;          // where a loaded map says the robot is
-  std::optional<Pose2> last_inserted_;  // map_from_base
+  std::optional<Pose2> last_odom_;       // odom_from_base of the last scan
+  std::optional<Pose2> start_;           // where a loaded map says the robot is
+  std::optional<Pose2> last_inserted_;   // map_from_base
+  std::vector<Eigen::Vector2d> places_;  // on the way, where no key frames tell it
   int contradictions_ = 0;
   std::optional<Pose2> found_map_from_odom_;  // of the last scan, by a wide search
   Place place_ = Place::kAsFitted;            // of the last scan

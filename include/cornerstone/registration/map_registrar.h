@@ -22,6 +22,7 @@ struct RegistrationTask {
   std::string reference_robot;  // whose map the reference is: what is known of it is kept under this name
   bool reference_anew = false;  // the map began anew: nothing known of the old one holds
   bool current_anew = false;
+  std::vector<Eigen::Vector2d> reference_way_m = {}, current_way_m = {};  // of the robots; empty: not known
 };
 
 struct RegistrationAttempt {
@@ -39,12 +40,17 @@ class MapRegistrar {
   RegistrationAttempt attempt(const RegistrationTask& task);
 
  private:
+  struct MapNews {
+    const GridMap& map;
+    const std::vector<Eigen::Vector2d>& way_m;
+    double time_s;
+  };
   // What is known of one robot's map.
   struct Side {
     LandmarkFollower follower;
     std::optional<MapEvidence> evidence;
 
-    void update(const GridMap& map, double time_s, const RegistrationParams& params);
+    void update(const MapNews& news, const RegistrationParams& params);
     PreparedMap prepared() const { return {follower.landmarks(), *evidence}; }
   };
   RegistrationOutcome registerIn(const Side& reference, const RegistrationHints& hints) const;

@@ -15,12 +15,13 @@ namespace cornerstone {
 struct MapEvidence {
   EvidenceGrid coarse;
   EvidenceGrid fine;
-  std::vector<EdgePoint> edges;    // thinned, in an order without pattern
-  EdgeSamples samples;             // the same, for the grids
-  Eigen::Vector2d middle_m;        // mean of the edges
-  double cell_m;                   // of the map itself
-  std::vector<double> directions;  // of the walls (proposals.h)
-  EdgeIndex all_edges;             // of the map, as found
+  std::vector<EdgePoint> edges;        // thinned, in an order without pattern
+  EdgeSamples samples;                 // the same, for the grids
+  Eigen::Vector2d middle_m;            // mean of the edges
+  double cell_m;                       // of the map itself
+  std::vector<double> directions;      // of the walls (proposals.h)
+  EdgeIndex all_edges;                 // of the map, as found
+  std::vector<Eigen::Vector2d> way_m;  // where the map's own robot has been; empty: not known
 };
 
 struct EvidencePair {
@@ -42,6 +43,10 @@ struct Look {
   ScoreLevel level;
   std::size_t max_samples;  // of each map; the counts are scaled up to all of them
 };
+
+// The edges of one map on the grid of another; the first max_samples stand for all.
+PoseScore scoreSamples(const EvidenceGrid& grid, const EdgeSamples& samples, const Pose2& grid_from_samples,
+                       std::size_t max_samples);
 
 PoseScore scorePose(const EvidencePair& maps, const Pose2& reference_from_current, const Look& look);
 

@@ -18,6 +18,9 @@ namespace cornerstone {
 struct MapView {
   const GridMap& map;
   const Landmarks& landmarks;
+  // Where the map's robot has been, m in the map's frame: the other one may have seen it there. Empty: not
+  // known.
+  std::vector<Eigen::Vector2d> way_m = {};
 };
 struct PreparedMap {  // the same with what every attempt would compute anew
   const Landmarks& landmarks;

@@ -50,6 +50,9 @@ struct RegistrationParams {
   // Of the walls that both maps can judge: bent maps of one place reach 0.15, large wrong matches begin at
   // 0.16.
   double max_contradicting_share = 0.15;
+  // Of the larger robot's body: a thing of its size that one robot saw where the other one has been is taken
+  // for the other robot and contradicts nothing.
+  double robot_radius_m = 0.25;
   // Weakest over strongest direction of the information: a corridor has next to none along its axis.
   double min_spread = 0.05;
   // Of being right, by a model fitted to many pairs (decision.h): a wrong frame is far worse than none.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "cornerstone/MapTiles.h"
 #include "cornerstone/mapping/tile_map.h"
@@ -17,11 +18,14 @@ class TileFollower {
   GridMap map() const { return tiles_ ? tiles_->assemble() : GridMap{}; }
   std::uint32_t epoch() const { return epoch_.value_or(0); }  // 0: nothing was heard yet
   std::uint32_t version() const { return version_; }          // of the newest tiles
+  // Where the robot has been, m in its map's frame, as told with the newest tiles.
+  const std::vector<Eigen::Vector2d>& way() const { return way_m_; }
 
  private:
   std::optional<TileMap> tiles_;
   std::optional<std::uint32_t> epoch_;
   std::uint32_t version_ = 0;
+  std::vector<Eigen::Vector2d> way_m_;
 };
 
 }  // namespace cornerstone
