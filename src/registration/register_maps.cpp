@@ -83,16 +83,12 @@ void keepNear(std::vector<Hypothesis>& hypotheses, const Pose2& prior, const Reg
 }
 
 // Puts the hypotheses in the order of their elastic scores, best first, and returns the scores.
-std::vector<JudgedPose> judgeAndSort(const EvidencePair& maps, const RobotBodies& bodies,
+std::vector<JudgedPose> judgeAndSort(const MapEvidence& there, const MapEvidence& here,
                                      std::vector<Hypothesis>& hypotheses) {
   std::vector<std::pair<PoseScore, Hypothesis>> scored(hypotheses.size());
   cv::parallel_for_(cv::Range(0, static_cast<int>(scored.size())), [&](const cv::Range& range) {
-    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i) {
-      Hypothesis& h = hypotheses[i];
-      h.score = bodies.excused(h.score, h.reference_from_current);
-      const PoseScore elastic = scoreElastic(maps.reference, maps.current, h.reference_from_current, {});
-      scored[i] = {bodies.excused(elastic, h.reference_from_current), h};
-    }
+    for (auto i = static_cast<std::size_t>(range.start); i < static_cast<std::size_t>(range.end); ++i)
+      scored[i] = {scoreElastic(there, here, hypotheses[i].reference_from_current, {}), hypotheses[i]};
   });
   std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) {
     return a.first.agree - a.first.contradict > b.first.agree - b.first.contradict;
@@ -107,8 +103,7 @@ std::vector<JudgedPose> judgeAndSort(const EvidencePair& maps, const RobotBodies
 
 // The lead of the first pose where edges must meet closely: where maps do not bend, that parts a right pose
 // from one whose walls are only near.
-double closeLead(const EvidencePair& maps, const RobotBodies& bodies, std::vector<Hypothesis> poses,
-                 const RegistrationParams& params) {
+double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const RegistrationParams& params) {
   const auto closer = [&](const MapEvidence& map) {
     MapEvidence close = map;
     close.fine = EvidenceGrid(map.fine.counts(), map.edges, params.close_reach_m);
@@ -117,7 +112,7 @@ double closeLead(const EvidencePair& maps, const RobotBodies& bodies, std::vecto
   const MapEvidence there = closer(maps.reference), here = closer(maps.current);
   settlePoses({there, here}, poses, params);
   std::vector<PoseScore> scores;
-  for (const Hypothesis& h : poses) scores.push_back(bodies.excused(h.score, h.reference_from_current));
+  for (const Hypothesis& h : poses) scores.push_back(h.score);
   return leadOf(scores, params.fine_cell_m);
 }
 
@@ -183,19 +178,22 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
                                                    : propose(reference, current, params);
   std::vector<Hypothesis> best = searchPoses({there, here}, proposals, params);
   if (hints.prior) keepNear(best, *hints.prior, params);
-  const RobotBodies bodies({there, here}, params.robot_radius_m);
-  const std::vector<JudgedPose> judged = judgeAndSort({there, here}, bodies, best);
+  const std::vector<JudgedPose> judged = judgeAndSort(there, here, best);
   if (best.empty() || best.front().value <= 0) return {{}, "no pose agrees with both maps"};
   const auto refined =
       refine({there, here}, best.front().reference_from_current, refinementOptions(hints, params));
   if (!refined) return {{}, "too few edges agree"};
   PoseEvidence evidence = weighPoses(judged, params.fine_cell_m);
+  // Only what is held against the best pose itself: of its rivals and its lead over them nothing is excused.
+  const PoseScore excused = RobotBodies({there, here}, params.robot_radius_m)
+                                .excused(judged.front().elastic, best.front().reference_from_current);
+  evidence.contradicting_m = excused.contradict * params.fine_cell_m;
   evidence.spread = refined->spread;
   evidence.smaller_map_m =
       static_cast<double>(std::min(there.edges.size(), here.edges.size())) * params.fine_cell_m;
   evidence.with_prior = hints.prior.has_value();
   if (probabilityRight(evidence) < params.min_probability)
-    evidence.lead_sigmas = std::max(evidence.lead_sigmas, closeLead({there, here}, bodies, best, params));
+    evidence.lead_sigmas = std::max(evidence.lead_sigmas, closeLead({there, here}, best, params));
   if (const auto reason = reasonToRefuse(evidence, params)) return {{}, *reason};
 
   Registration registration;
@@ -205,7 +203,7 @@ RegistrationOutcome registerMaps(const PreparedMap& reference, const PreparedMap
                                      refined->reference_from_current, kMatched);
   registration.rms_m = refined->rms_m;
   registration.overlap = overlapOf(there.coarse, here.coarse, refined->reference_from_current);
-  registration.agreement = judged.front().elastic.agreement();
+  registration.agreement = excused.agreement();
   registration.second_best = evidence.second_best;
   registration.probability = probabilityRight(evidence);
   return {registration, ""};
