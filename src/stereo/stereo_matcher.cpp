@@ -101,6 +101,11 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   fillGaps(disparity);
 }
 
+int StereoMatcher::largest_px(cv::Size size) const {
+  if (!coarse_matcher_ || !CoarseFill::suits(size)) return params_.max_disparity_px;
+  return std::max(params_.max_disparity_px, CoarseFill::kFactor * coarse_matcher_->params_.max_disparity_px);
+}
+
 int StereoMatcher::windowFor(int image_width_px) const {
   if (params_.window_px > 0) return params_.window_px;
   const int odd_px = image_width_px / kWindowsAcross / 2 * 2 + 1;

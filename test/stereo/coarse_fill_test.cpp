@@ -103,6 +103,9 @@ TEST(CoarseFill, SeesWhatIsNearerThanTheRange) {
   const StereoImages images = nearWallBeforeAFarOne(108);
   EXPECT_EQ(shareOfColumnsSeeing(108, matched(images, withLevel(false))), 0);
   EXPECT_GT(shareOfColumnsSeeing(108, matched(images, withLevel(true))), 0.95);
+  EXPECT_EQ(StereoMatcher(withLevel(true)).largest_px(kSize), 128);
+  EXPECT_EQ(StereoMatcher(withLevel(true)).largest_px({320, 240}), 96);
+  EXPECT_EQ(StereoMatcher(withLevel(false)).largest_px(kSize), 96);
 }
 
 // Coarse windows reach four times as far over the outline.

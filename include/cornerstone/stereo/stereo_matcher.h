@@ -91,6 +91,9 @@ class StereoMatcher {
   Disparity match(const StereoImages& images, const TrinocularRig& rig);
   // The same into an answer that is used again and again.
   void match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
+  // The largest disparity that images of a size may be given: the coarse level searches farther than the fine
+  // one.
+  int largest_px(cv::Size size) const;
 
  private:
   int windowFor(int image_width_px) const;
