@@ -165,7 +165,7 @@ class TrinocularStereoNodelet : public nodelet::Nodelet {
 
   void publish(const cv::Mat1b& reference, const std_msgs::Header& header) {
     namespace encodings = sensor_msgs::image_encodings;
-    const double searched_px = params_.stereo.max_disparity_px;
+    const double searched_px = matcher_->largest_px(reference.size());
     if (disparity_publisher_.getNumSubscribers() > 0)
       disparity_publisher_.publish(toDisparityImage(disparity_, {0, searched_px}, header));
     if (sigma_publisher_.getNumSubscribers() > 0)

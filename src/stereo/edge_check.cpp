@@ -11,8 +11,7 @@
 namespace cornerstone {
 namespace {
 
-constexpr int kStep_px = 1;   // neighbours on one surface differ by no more
-constexpr int kAside_px = 3;  // a texture seen at a disparity that is off by so much no longer fits
+constexpr int kStep_px = 1;  // neighbours on one surface differ by no more
 // Of pixels that are beyond doubt: any better. Half: hardly a change on photographs; nearly double: a
 // fiftieth more missed columns, thin things.
 constexpr double kStrongCostRatio = 1;
@@ -34,9 +33,7 @@ bool EdgeCheck::standsOut(const Winners& winners, const SweepInput& input, cv::P
     if (before_(other) == 0 && costAround(input, at, other_px) < smallest_cost_ratio * own_cost) return false;
   }
   if (!beside_none) return true;
-  const double smallest_cost = smallest_cost_ratio * own_cost + kNoiseCostAround;
-  return costAround(input, at, own_px + kAside_px) >= smallest_cost &&
-         costAround(input, at, std::max(own_px - kAside_px, 0)) >= smallest_cost;
+  return costsMoreAside(input, at, own_px, smallest_cost_ratio * own_cost + kNoiseCostAround);
 }
 
 void EdgeCheck::check(const Winners& winners, const SweepInput& input, const How& how, cv::Mat1b& rejection) {

@@ -20,6 +20,9 @@ constexpr int kMostThreads = 64;
 // one of them. On photographs half: an eightieth fewer answers, a twenty-fifth more missed columns; double:
 // as many more answers, a twentieth more of which are wrong.
 constexpr int kGapWindows = 2;
+// Of the coarse level, in its pixels: processors search so many at once, and what is nearer than the range
+// of the large images must not look as if it were not there.
+constexpr int kCoarseDisparities_px = 32;
 
 // An odd number within the range, or 0: derived from the image's width.
 void requireOddOrNone(int value, const std::pair<int, int>& range, const std::string& name) {
@@ -46,6 +49,15 @@ void requireUsable(const StereoParams& params) {
 
 std::string textOf(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
+StereoParams coarseOf(StereoParams params) {
+  const int px_per_round = CoarseFill::kFactor * kCoarseDisparities_px;
+  params.max_disparity_px =
+      (params.max_disparity_px + px_per_round - 1) / px_per_round * kCoarseDisparities_px;
+  params.largest_sigma_px /= CoarseFill::kFactor;
+  params.coarse_level = false;
+  return params;
+}
+
 }  // namespace
 
 void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
@@ -65,6 +77,7 @@ void requireUsable(const StereoImages& images, const TrinocularRig& rig) {
 StereoMatcher::StereoMatcher(const StereoParams& params) : params_(params) {
   requireUsable(params);
   workers_ = std::make_unique<Workers>(params.threads);
+  if (params.coarse_level) coarse_matcher_ = std::make_unique<StereoMatcher>(coarseOf(params));
 }
 
 Disparity StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig) {
@@ -84,7 +97,13 @@ void StereoMatcher::match(const StereoImages& images, const TrinocularRig& rig, 
   refine(disparity);
   dropSmallSurfaces(disparity);
   outline_check_.check(*winners_, sweep_input_, *workers_, disparity);
+  fillFromCoarse(images, disparity);
   fillGaps(disparity);
+}
+
+int StereoMatcher::largest_px(cv::Size size) const {
+  if (!coarse_matcher_ || !CoarseFill::suits(size)) return params_.max_disparity_px;
+  return std::max(params_.max_disparity_px, CoarseFill::kFactor * coarse_matcher_->params_.max_disparity_px);
 }
 
 int StereoMatcher::windowFor(int image_width_px) const {
@@ -127,6 +146,29 @@ void StereoMatcher::refine(Disparity& disparity) {
         if (sigmas_px[x] > largest_sigma) reject(disparity, {x, y}, Rejection::kTexture);
     }
   });
+}
+
+void StereoMatcher::matchCoarse(const StereoImages& images, const TrinocularRig& rig) {
+  CoarseFill::shrink(images.reference, *workers_, coarse_images_.reference);
+  CoarseFill::shrink(images.right, *workers_, coarse_images_.right);
+  if (images.top.empty())
+    coarse_images_.top.release();
+  else
+    CoarseFill::shrink(images.top, *workers_, coarse_images_.top);
+  TrinocularRig coarse_rig = rig;
+  coarse_rig.image_size_px = coarse_images_.reference.size();
+  coarse_matcher_->match(coarse_images_, coarse_rig, coarse_);
+}
+
+void StereoMatcher::fillFromCoarse(const StereoImages& images, Disparity& disparity) {
+  const cv::Size size = images.reference.size();
+  if (!coarse_matcher_ || !CoarseFill::suits(size)) return;
+  const int window_px = coarse_matcher_->windowFor(size.width / CoarseFill::kFactor);
+  if (!coarse_fill_.findSilent(disparity.rejection, window_px, *workers_)) return;
+  matchCoarse(images, disparity.rig);
+  coarse_fill_.fill({coarse_, coarse_matcher_->sweep_input_, params_.smallest_edge_cost_ratio,
+                     static_cast<float>(params_.surface_step_px)},
+                    *workers_, disparity);
 }
 
 void StereoMatcher::fillGaps(Disparity& disparity) {

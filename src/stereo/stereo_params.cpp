@@ -15,6 +15,7 @@ void describe(ParamVisitor& visitor, StereoParams& params) {
   visitor.field("strong_product", params.strong_product);
   visitor.field("smallest_strong_windows", params.smallest_strong_windows);
   visitor.field("surface_step_px", params.surface_step_px);
+  visitor.field("coarse_level", params.coarse_level);
   visitor.field("threads", params.threads);
 }
 

@@ -11,6 +11,10 @@ namespace cornerstone {
 // if none does.
 double costAround(const SweepInput& input, cv::Point at, int disparity_px);
 
+// Whether disparities a little off cost at least so much: the pixel itself shows something, and is no bare
+// wall beside a textured thing.
+bool costsMoreAside(const SweepInput& input, cv::Point at, int own_px, double smallest_cost);
+
 constexpr double kUnrelatedCostAround = 9 * kChanceCost / 2.0;
 // What noise makes of it. Half or double in GapFill: two thousandths fewer or more answers on photographs.
 constexpr double kNoiseCostAround = 40;

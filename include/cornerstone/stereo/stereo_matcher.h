@@ -2,7 +2,8 @@
 // of a reference pixel is summed over the camera pairs before the best is chosen (Okutomi and Kanade, 1993).
 //
 // features (gradient_features.h) -> search (cost_sweep.h) -> checks (validation.h) -> sub-pixel and sigma
-// (subpixel.h) -> surfaces, outlines -> gaps (gap_fill.h)
+// (subpixel.h) -> surfaces, outlines -> a coarse level where all is silent (coarse_fill.h) -> gaps
+// (gap_fill.h)
 #pragma once
 
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "cornerstone/base/params.h"
 #include "cornerstone/base/workers.h"
+#include "cornerstone/stereo/coarse_fill.h"
 #include "cornerstone/stereo/cost_sweep.h"
 #include "cornerstone/stereo/disparity.h"
 #include "cornerstone/stereo/gap_fill.h"
@@ -71,6 +73,10 @@ struct StereoParams {
   double smallest_strong_windows = 1;
   // Neighbours that differ by more are on different surfaces.
   double surface_step_px = 1.0;
+  // Images from 640 px width on are matched shrunk to a quarter, too, where they are silent over some
+  // degrees: near walls have no texture sharp enough for their windows. That level searches to 128 px at
+  // least.
+  bool coarse_level = true;
   // Processors that one image set may keep busy; the answers are the same with any number. 1 leaves the
   // others to the rest of the robot; more shorten the delay of large images.
   int threads = 1;
@@ -85,12 +91,17 @@ class StereoMatcher {
   Disparity match(const StereoImages& images, const TrinocularRig& rig);
   // The same into an answer that is used again and again.
   void match(const StereoImages& images, const TrinocularRig& rig, Disparity& disparity);
+  // The largest disparity that images of a size may be given: the coarse level searches farther than the fine
+  // one.
+  int largest_px(cv::Size size) const;
 
  private:
   int windowFor(int image_width_px) const;
   int supportFor(int image_width_px) const;
   void sweep(const StereoImages& images, const TrinocularRig& rig);
   void refine(Disparity& disparity);
+  void matchCoarse(const StereoImages& images, const TrinocularRig& rig);
+  void fillFromCoarse(const StereoImages& images, Disparity& disparity);
   void fillGaps(Disparity& disparity);
   void dropSmallSurfaces(Disparity& disparity);
 
@@ -106,6 +117,10 @@ class StereoMatcher {
   GapFill gap_fill_;
   OutlineCheck outline_check_;
   cv::Mat1b verdicts_;
+  CoarseFill coarse_fill_;
+  std::unique_ptr<StereoMatcher> coarse_matcher_;  // empty: not asked for
+  StereoImages coarse_images_;
+  Disparity coarse_;
 };
 
 }  // namespace cornerstone
