@@ -30,6 +30,7 @@ namespace {
 void requireUsable(const RegistrationNodeletParams& params) {
   requirePositive(params.period_s, "parameter 'period_s'");
   requirePositive(params.tf_period_s, "parameter 'tf_period_s'");
+  requireWithin(params.registration.robot_radius_m, 0, 2, "parameter 'registration/robot_radius_m'");
   const std::vector<std::string>& others = params.other_robots;
   for (const std::string& other : others)
     if (other.empty() || other == params.robot || other == params.reference_robot ||

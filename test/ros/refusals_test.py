@@ -79,6 +79,8 @@ class Refusals(unittest.TestCase):
               for levels, named in BAD_LEVELS],
             ("registration", "registration", {"robot": ""}, "robot"),
             ("registration", "registration", {"period_s": 0.0}, "period_s"),
+            ("registration", "registration", {"registration": dict(parameters_of("registration")["registration"], robot_radius_m=-0.1)},
+             "robot_radius_m"),
             ("simulator", "simulator", {"world": "/nowhere.yaml"}, "/nowhere.yaml"),
             ("simulator", "simulator", {"robots": ["nobody"], "world": OFFICE}, "nobody")])
 

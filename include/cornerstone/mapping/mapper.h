@@ -16,6 +16,7 @@
 
 #include <future>
 #include <optional>
+#include <vector>
 
 #include "cornerstone/mapping/local_map.h"
 #include "cornerstone/mapping/map_redraw.h"
