@@ -55,6 +55,12 @@ class Levels(unittest.TestCase):
     def test_its_tiles_go_out_for_other_robots(self):
         tiles = self.recorder.of("/a/map_tiles/ceiling")
         self.assertTrue(tiles and tiles[0].complete)
+        # With them goes where the robot has been, to what its map is off by.
+        truth = chain.Truth(self.recorder.of("/a/ground_truth")).poses
+        told = [truth[0] * Pose2(place.x, place.y, 0) for place in tiles[-1].way]
+        self.assertTrue(told)
+        self.assertLess(max(min(place.distance_to(pose) for pose in truth) for place in told), 0.3)
+        self.assertLess(max(min(place.distance_to(pose) for place in told) for pose in truth), 0.6)
 
 
 if __name__ == "__main__":
