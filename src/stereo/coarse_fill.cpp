@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "cornerstone/stereo/pixel_cost.h"
 
@@ -20,31 +21,19 @@ constexpr double kSilentShare = 0.5;
 // thrice as many missed ones in the hall.
 constexpr double kShownShare = 0.75;
 
-// Calls action(x, sum) for each square of a row of squares.
-template <typename ValueOf, typename Action>
-void forEachSquare(const cv::Mat1b& image, int row, const ValueOf& valueOf, const Action& action) {
-  const std::uint8_t* rows[kFactor];
-  for (int j = 0; j < kFactor; ++j) rows[j] = image[row * kFactor + j];
-  for (int x = 0; x < image.cols / kFactor; ++x) {
-    int sum = 0;
-    for (const std::uint8_t* pixels : rows)
-      for (int i = 0; i < kFactor; ++i) sum += valueOf(pixels[x * kFactor + i]);
-    action(x, sum);
-  }
+// Of a row of squares, how many pixels of each are silent.
+void countSilent(const cv::Mat1b& rejection, int row, std::uint8_t* silent) {
+  std::fill_n(silent, rejection.cols / kFactor, std::uint8_t{0});
+  for (int y = row * kFactor; y < (row + 1) * kFactor; ++y)
+    for (int x = 0; x < rejection.cols / kFactor * kFactor; ++x)
+      silent[x / kFactor] = static_cast<std::uint8_t>(silent[x / kFactor] + (rejection(y, x) != 0));
 }
 
 }  // namespace
 
-void CoarseFill::shrink(const cv::Mat1b& image, Workers& workers, cv::Mat1b& shrunk) {
-  shrunk.create(image.rows / kFactor, image.cols / kFactor);
-  workers.share(shrunk.rows, [&](int begin, int end) {
-    for (int y = begin; y < end; ++y) {
-      std::uint8_t* out = shrunk[y];
-      forEachSquare(
-          image, y, [](std::uint8_t grey) { return static_cast<int>(grey); },
-          [&](int x, int sum) { out[x] = static_cast<std::uint8_t>((sum + kSquare / 2) / kSquare); });
-    }
-  });
+void CoarseFill::shrink(const cv::Mat1b& image, cv::Mat1b& shrunk) {
+  const cv::Size size = image.size() / kFactor;
+  cv::resize(image(cv::Rect({0, 0}, size * kFactor)), shrunk, size, 0, 0, cv::INTER_AREA);
 }
 
 bool CoarseFill::findSilent(const cv::Mat1b& rejection, int coarse_window_px, Workers& workers) {
@@ -52,12 +41,7 @@ bool CoarseFill::findSilent(const cv::Mat1b& rejection, int coarse_window_px, Wo
   silent_.create(rejection.rows / kFactor, rejection.cols / kFactor);
   wanted_.create(silent_.size());
   workers.share(silent_.rows, [&](int begin, int end) {
-    for (int y = begin; y < end; ++y) {
-      std::uint8_t* silent = silent_[y];
-      forEachSquare(
-          rejection, y, [](std::uint8_t why) { return static_cast<int>(why != 0); },
-          [&](int x, int sum) { silent[x] = static_cast<std::uint8_t>(sum); });
-    }
+    for (int y = begin; y < end; ++y) countSilent(rejection, y, silent_[y]);
   });
   box_sums_.compute(silent_, area_px_, silent_sums_);
   const int least = static_cast<int>(kSilentShare * kSquare * area_px_ * area_px_);

@@ -149,12 +149,12 @@ void StereoMatcher::refine(Disparity& disparity) {
 }
 
 void StereoMatcher::matchCoarse(const StereoImages& images, const TrinocularRig& rig) {
-  CoarseFill::shrink(images.reference, *workers_, coarse_images_.reference);
-  CoarseFill::shrink(images.right, *workers_, coarse_images_.right);
+  CoarseFill::shrink(images.reference, coarse_images_.reference);
+  CoarseFill::shrink(images.right, coarse_images_.right);
   if (images.top.empty())
     coarse_images_.top.release();
   else
-    CoarseFill::shrink(images.top, *workers_, coarse_images_.top);
+    CoarseFill::shrink(images.top, coarse_images_.top);
   TrinocularRig coarse_rig = rig;
   coarse_rig.image_size_px = coarse_images_.reference.size();
   coarse_matcher_->match(coarse_images_, coarse_rig, coarse_);

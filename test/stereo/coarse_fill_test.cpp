@@ -153,8 +153,7 @@ TEST(CoarseFill, AnswersAreTheSameWithAnyNumberOfThreads) {
 TEST(CoarseFill, ShrinksToMeans) {
   cv::Mat1b image(9, 14, std::uint8_t{7}), shrunk;
   image(1, 1) = 7 + 40;
-  Workers workers(1);
-  CoarseFill::shrink(image, workers, shrunk);
+  CoarseFill::shrink(image, shrunk);
   EXPECT_EQ(shrunk.size(), cv::Size(3, 2));
   EXPECT_EQ(shrunk(0, 0), 10);  // 7 + 2.5, rounded
   EXPECT_EQ(shrunk(1, 2), 7);

@@ -29,7 +29,7 @@ class CoarseFill {
 
   static bool suits(cv::Size size) { return size.width / kFactor >= kLeastWidth_px; }
   // Means over squares of kFactor; pixels left over at the right and below are left out.
-  static void shrink(const cv::Mat1b& image, Workers& workers, cv::Mat1b& shrunk);
+  static void shrink(const cv::Mat1b& image, cv::Mat1b& shrunk);
 
   // Whether the fine level is silent over an area that a coarse window may answer. `coarse_window_px`: edge.
   bool findSilent(const cv::Mat1b& rejection, int coarse_window_px, Workers& workers);
