@@ -32,6 +32,11 @@ void draw(const LocalMap& local, std::size_t level, GridMap& map) {
       float& known = map.occupied(row, col);
       if (std::abs(here - kUnseen) > std::abs(known - kUnseen)) known = here;
     }
+  for (const SurfacePoint& point : part.surface) {
+    const Eigen::Vector2f at_m =
+        (local.mapFromLocal() * Eigen::Vector2f(point.x_m, point.y_m).cast<double>()).cast<float>();
+    map.surface.push_back({at_m.x(), at_m.y(), point.weight});
+  }
 }
 
 }  // namespace

@@ -172,6 +172,10 @@ GridMap OccupancyGrid::snapshot() const {
 
 GridMap OccupancyGrid::tile(TileIndex index) const { return tiles(index, index); }
 
+bool OccupancyGrid::isSurface(const SurfacePoint& point, EvidenceCell cell) const {
+  return point.weight > 0 && scale_.occupied(cell) >= kSurfaceOccupied;
+}
+
 GridMap OccupancyGrid::tiles(TileIndex low, TileIndex high) const {
   GridMap map{geometryOf(low, high), {}};
   map.occupied = cv::Mat1f(map.geometry.rows, map.geometry.cols, kUnseen);
@@ -185,6 +189,10 @@ GridMap OccupancyGrid::tiles(TileIndex low, TileIndex high) const {
         float* out = map.occupied.ptr<float>(at.row - first.row + row) + (at.col - first.col);
         for (int col = 0; col < kTileCells; ++col) out[col] = scale_.published(cells[col]);
       }
+      const std::vector<EvidenceCell>& cells = found->second.cells;
+      const std::vector<SurfacePoint>& surface = found->second.surface;
+      for (std::size_t i = 0; i < surface.size(); ++i)
+        if (isSurface(surface[i], cells[i])) map.surface.push_back(surface[i]);
     }
   }
   return map;
@@ -257,8 +265,7 @@ std::vector<SurfacePoint> OccupancyGrid::readSurface(const CellWindow& window) c
     const std::size_t start = window.indexOf(at);
     for (int i = 0; i < count; ++i) {
       const std::size_t to = start + static_cast<std::size_t>(i);
-      if (points[i].weight > 0 && scale_.occupied(window.cells[to]) >= kSurfaceOccupied)
-        surface[to] = points[i];
+      if (isSurface(points[i], window.cells[to])) surface[to] = points[i];
     }
   });
   return surface;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <utility>
 
 #include "cornerstone/base/errors.h"
 
@@ -19,13 +20,13 @@ TileMap::TileMap(double resolution_m, int tile_cells) : resolution_m_(resolution
   requirePositive(tile_cells, "tiles: size");
 }
 
-void TileMap::put(int col, int row, const cv::Mat1f& occupied) {
+void TileMap::put(int col, int row, const cv::Mat1f& occupied, std::vector<SurfacePoint> surface) {
   if (occupied.rows != tile_cells_ || occupied.cols != tile_cells_)
     throw InputError("tiles: a tile of another size");
   if (col % tile_cells_ != 0 || row % tile_cells_ != 0)
     throw InputError("tiles: a tile between the places of tiles");
   requireRoomFor(row / tile_cells_, col / tile_cells_);
-  tiles_[{row / tile_cells_, col / tile_cells_}] = occupied.clone();
+  tiles_[{row / tile_cells_, col / tile_cells_}] = {occupied.clone(), std::move(surface)};
 }
 
 void TileMap::requireRoomFor(int tile_row, int tile_col) const {
@@ -58,9 +59,12 @@ GridMap TileMap::assemble() const {
   map.geometry.origin_y_m = first_row * tile_cells_ * resolution_m_;
   map.occupied.create(map.geometry.rows, map.geometry.cols);
   map.occupied.setTo(kUnseen);
-  for (const auto& [place, tile] : tiles_)
-    tile.copyTo(map.occupied(cv::Rect((place.second - first_col) * tile_cells_,
-                                      (place.first - first_row) * tile_cells_, tile_cells_, tile_cells_)));
+  for (const auto& [place, tile] : tiles_) {
+    tile.occupied.copyTo(
+        map.occupied(cv::Rect((place.second - first_col) * tile_cells_,
+                              (place.first - first_row) * tile_cells_, tile_cells_, tile_cells_)));
+    map.surface.insert(map.surface.end(), tile.surface.begin(), tile.surface.end());
+  }
   return map;
 }
 

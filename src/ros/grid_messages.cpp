@@ -81,18 +81,24 @@ void applyUpdate(const map_msgs::OccupancyGridUpdate& update, GridMap& map) {
   std::transform(update.data.begin(), update.data.end(), part.begin(), fromPercent);
 }
 
-MapTile toTile(const cv::Mat1f& occupied, int col, int row) {
-  MapTile tile;
-  tile.col = col;
-  tile.row = row;
-  tile.size = static_cast<std::uint16_t>(occupied.cols);
-  cv::Mat1b values(occupied.size());
-  std::transform(occupied.begin(), occupied.end(), values.begin(), toTileValue);
-  cv::imencode(".png", values, tile.png);
-  return tile;
+MapTile toTile(const GridMap& tile, Cell first) {
+  MapTile message;
+  message.col = first.col;
+  message.row = first.row;
+  message.size = static_cast<std::uint16_t>(tile.occupied.cols);
+  cv::Mat1b values(tile.occupied.size());
+  std::transform(tile.occupied.begin(), tile.occupied.end(), values.begin(), toTileValue);
+  cv::imencode(".png", values, message.png);
+  for (const SurfacePoint& point : tile.surface) {
+    MapSurfacePoint& told = message.surface.emplace_back();
+    told.x = point.x_m;
+    told.y = point.y_m;
+    told.weight = point.weight;
+  }
+  return message;
 }
 
-cv::Mat1f fromTile(const MapTile& tile) {
+cv::Mat1f cellsOf(const MapTile& tile) {
   const cv::Mat1b values = tile.png.empty() ? cv::Mat1b() : cv::imdecode(tile.png, cv::IMREAD_GRAYSCALE);
   if (tile.size == 0 || values.rows != tile.size || values.cols != tile.size)
     throw InputError("map_tiles: a tile's png is not a picture of size x size");
@@ -101,6 +107,20 @@ cv::Mat1f fromTile(const MapTile& tile) {
     return value == kTileUnseen ? kUnseen : std::min(1.f, static_cast<float>(value) / kTileSteps);
   });
   return occupied;
+}
+
+std::vector<SurfacePoint> surfaceOf(const MapTile& tile) {
+  if (tile.surface.size() > static_cast<std::size_t>(tile.size) * tile.size)
+    throw InputError("map_tiles: a tile's surface has more points than cells");
+  std::vector<SurfacePoint> surface;
+  surface.reserve(tile.surface.size());
+  for (const MapSurfacePoint& point : tile.surface) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.weight) ||
+        point.weight <= 0)
+      throw InputError("map_tiles: a tile's surface is not finite or has no weight");
+    surface.push_back({point.x, point.y, point.weight});
+  }
+  return surface;
 }
 
 }  // namespace cornerstone

@@ -125,8 +125,7 @@ MapTiles TilePublisher::messageOf(const GridState& state, const std::vector<Tile
     told.y = static_cast<float>(place.y());
   }
   for (const TileIndex& index : tiles) {
-    const Cell first = firstCellOf(index);
-    message.tiles.push_back(toTile(state.grid.tile(index).occupied, first.col, first.row));
+    message.tiles.push_back(toTile(state.grid.tile(index), firstCellOf(index)));
   }
   return message;
 }

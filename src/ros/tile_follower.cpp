@@ -33,7 +33,7 @@ bool TileFollower::take(const MapTiles& message) {
     TileMap next = fresh ? TileMap(message.resolution, message.tiles.front().size) : *tiles_;
     if (message.resolution != next.resolution())
       throw InputError("map_tiles: resolution changed within one map_epoch");
-    for (const MapTile& tile : message.tiles) next.put(tile.col, tile.row, fromTile(tile));
+    for (const MapTile& tile : message.tiles) next.put(tile.col, tile.row, cellsOf(tile), surfaceOf(tile));
     tiles_ = std::move(next);
   }
   epoch_ = message.map_epoch;

@@ -67,6 +67,11 @@ TEST(LocalMap, TheMapIsComposedOfAllLocalMaps) {
       for (const double dy : {-0.03, 0.03}) most = std::max(most, at(both, wall_m.x() + dx, wall_m.y() + dy));
     EXPECT_GT(most, kOccupied) << wall_m.transpose();
   }
+  EXPECT_EQ(both.surface.size(), alone.surface.size() + maps[1].grid().snapshot().surface.size());
+  for (const SurfacePoint& point : both.surface) {
+    const Eigen::Vector2d at_m = Eigen::Vector2f(point.x_m, point.y_m).cast<double>();
+    EXPECT_LT(room.distanceTo(at_m), 0.05) << at_m.transpose();
+  }
   EXPECT_LT(at(both, 1, 2.22), kFree);
   EXPECT_LT(at(both, 3, 2.22), kFree);
   EXPECT_EQ(at(both, 7, 2), kUnseen);

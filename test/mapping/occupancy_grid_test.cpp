@@ -137,11 +137,19 @@ TEST(OccupancyGrid, TilesKeepTheirPlaceAndTellWhatChanged) {
   EXPECT_NEAR(tile.geometry.origin_y_m, 0, 1e-9);
   EXPECT_EQ(tile.occupied.rows, kTileCells);
   const GridMap all = grid.snapshot();
+  std::size_t points = 0;
   for (const TileIndex& index : grid.changedTiles(0)) {
     const GridMap part = grid.tile(index);
+    points += part.surface.size();
     const Cell at = all.geometry.cellAt(part.geometry.centreOf({0, 0}));
     const cv::Mat same = all.occupied(cv::Rect(at.col, at.row, kTileCells, kTileCells)) != part.occupied;
     EXPECT_EQ(cv::countNonZero(same), 0);
+  }
+  EXPECT_GT(points, 40u);
+  EXPECT_EQ(all.surface.size(), points);
+  for (const SurfacePoint& point : all.surface) {
+    EXPECT_NEAR(std::abs(point.x_m + 10), 12, 0.03) << "the walls at 2 m and -22 m";
+    EXPECT_GT(point.weight, 0);
   }
 }
 

@@ -26,9 +26,12 @@ TEST(TileMap, AssemblesTilesOnBothSidesOfTheOrigin) {
 
 TEST(TileMap, ANewerTileReplacesTheOlder) {
   TileMap tiles(0.5, 4);
-  tiles.put(0, 0, tileOf(0.2f));
-  tiles.put(0, 0, tileOf(0.7f));
-  EXPECT_NEAR(tiles.assemble().occupied(2, 2), 0.7f, 1e-6f);
+  tiles.put(0, 0, tileOf(0.2f), {{0.1f, 0, 1}});
+  tiles.put(0, 0, tileOf(0.7f), {{0.2f, 0, 1}});
+  const GridMap map = tiles.assemble();
+  EXPECT_NEAR(map.occupied(2, 2), 0.7f, 1e-6f);
+  ASSERT_EQ(map.surface.size(), 1u);
+  EXPECT_EQ(map.surface.front().x_m, 0.2f);
 }
 
 TEST(TileMap, RefusesWhatDoesNotFit) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cornerstone/base/errors.h"
 
 namespace cornerstone {
@@ -48,15 +50,16 @@ TEST(GridMessages, RefusesMessagesThatDoNotFit) {
 }
 
 TEST(GridMessages, TilesKeepProbabilityToHalfAStepAndUnseenExactly) {
-  cv::Mat1f tile(4, 4, kUnseen);
-  tile(0, 0) = 0.f;
-  tile(0, 1) = 1.f;
-  tile(3, 3) = 0.3f;
-  tile(2, 0) = 0.5001f;
-  const MapTile message = toTile(tile, -8, 4);
+  GridMap tile;
+  tile.occupied = cv::Mat1f(4, 4, kUnseen);
+  tile.occupied(0, 0) = 0.f;
+  tile.occupied(0, 1) = 1.f;
+  tile.occupied(3, 3) = 0.3f;
+  tile.occupied(2, 0) = 0.5001f;
+  const MapTile message = toTile(tile, {-8, 4});
   EXPECT_EQ(message.col, -8);
   EXPECT_EQ(message.size, 4);
-  const cv::Mat1f back = fromTile(message);
+  const cv::Mat1f back = cellsOf(message);
   EXPECT_EQ(back(1, 1), kUnseen);
   EXPECT_NE(back(2, 0), kUnseen);
   EXPECT_NEAR(back(0, 0), 0, 1e-6f);
@@ -64,12 +67,39 @@ TEST(GridMessages, TilesKeepProbabilityToHalfAStepAndUnseenExactly) {
   EXPECT_NEAR(back(3, 3), 0.3f, 0.5f / 254);
 }
 
+MapTile tileWithSurface() {
+  GridMap tile;
+  tile.occupied = cv::Mat1f(2, 2, 0.8f);
+  tile.surface = {{1.234f, -5.678f, 400.f}, {-0.5f, 0.25f, 1e5f}};
+  return toTile(tile, {0, 0});
+}
+
+TEST(GridMessages, TilesKeepTheirSurface) {
+  const std::vector<SurfacePoint> back = surfaceOf(tileWithSurface());
+  ASSERT_EQ(back.size(), 2u);
+  EXPECT_EQ(back[0].x_m, 1.234f);
+  EXPECT_EQ(back[0].y_m, -5.678f);
+  EXPECT_EQ(back[1].weight, 1e5f);
+}
+
 TEST(GridMessages, RefusesABrokenTile) {
-  MapTile message = toTile(cv::Mat1f(4, 4, 0.2f), 0, 0);
+  MapTile message = tileWithSurface();
   message.png.resize(10);
-  EXPECT_THROW(fromTile(message), InputError);
+  EXPECT_THROW(cellsOf(message), InputError);
   message.png.clear();
-  EXPECT_THROW(fromTile(message), InputError);
+  EXPECT_THROW(cellsOf(message), InputError);
+}
+
+TEST(GridMessages, RefusesABrokenSurface) {
+  MapTile message = tileWithSurface();
+  message.surface.front().y = std::nanf("");
+  EXPECT_THROW(surfaceOf(message), InputError);
+  message = tileWithSurface();
+  message.surface.front().weight = 0;
+  EXPECT_THROW(surfaceOf(message), InputError);
+  message = tileWithSurface();
+  message.surface.resize(5, message.surface.front());
+  EXPECT_THROW(surfaceOf(message), InputError) << "more points than cells";
 }
 
 }  // namespace

@@ -15,7 +15,10 @@ MapTiles tilesAt(int col, float value, std::uint32_t epoch, std::uint32_t versio
   message.resolution = 0.1;
   message.map_epoch = epoch;
   message.version = version;
-  message.tiles = {toTile(cv::Mat1f(4, 4, value), col, 0)};
+  GridMap tile;
+  tile.occupied = cv::Mat1f(4, 4, value);
+  tile.surface = {{0.1f * static_cast<float>(col), 0, 100}};
+  message.tiles = {toTile(tile, {col, 0})};
   return message;
 }
 
@@ -26,6 +29,7 @@ TEST(TileFollower, AddsTilesOfOneEpochAndDropsThoseOfAnOlderOne) {
   EXPECT_FALSE(follower.take(tilesAt(0, 0.2f, 1, 1)));
   EXPECT_FALSE(follower.take(tilesAt(4, 0.2f, 1, 2)));
   EXPECT_EQ(follower.map().geometry.cols, 8);
+  EXPECT_EQ(follower.map().surface.size(), 2u);
   EXPECT_TRUE(follower.take(tilesAt(0, 0.2f, 2, 1))) << "another epoch";
   EXPECT_EQ(follower.map().geometry.cols, 4);
   EXPECT_EQ(follower.epoch(), 2u);
@@ -76,6 +80,9 @@ TEST(TileFollower, AMessageAtFaultChangesNothing) {
   coarser.resolution = 0.2;
   EXPECT_THROW(follower.take(coarser), InputError);
   EXPECT_THROW(follower.take(MapTiles{}), InputError);
+  MapTiles weightless = tilesAt(4, 0.2f, 1, 2);
+  weightless.tiles.front().surface.front().weight = -1;
+  EXPECT_THROW(follower.take(weightless), InputError);
   MapTiles astray = tilesAt(4, 0.2f, 1, 2);
   astray.way.resize(1);
   astray.way.front().y = std::nanf("");

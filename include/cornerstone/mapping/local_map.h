@@ -35,7 +35,8 @@ class LocalMap {
   Pose2 map_from_local_;
 };
 
-// One level of all local maps in the map's frame: each cell is that of the local map that knows most of it. A
+// One level of all local maps in the map's frame: each cell is that of the local map that knows most of it,
+// the surface is that of all. A
 // local map that is not turned against the map and lies by whole cells is copied exactly.
 GridMap composed(const std::vector<LocalMap>& maps, std::size_t level = 0);
 

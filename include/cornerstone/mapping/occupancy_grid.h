@@ -65,13 +65,6 @@ struct CellWindow {
   }
 };
 
-// Where within (or beside) its cell a surface lies: the weighted mean of the looks it caused. This is what
-// lets scans be fitted to millimetres on a grid of 5 cm.
-struct SurfacePoint {
-  float x_m = 0;  // in the map frame
-  float y_m = 0;
-  float weight = 0;  // 1 / variance in 1/m^2; 0: none
-};
 struct SurfaceHit {
   Cell cell;  // of the grid
   Eigen::Vector2d point_m;
@@ -98,7 +91,7 @@ class OccupancyGrid {
   // Tiles changed after `version` (0: all), in a fixed order.
   std::vector<TileIndex> changedTiles(std::uint64_t version) const;
   GridMap tile(TileIndex index) const;  // kTileCells x kTileCells; kUnseen where there is nothing
-  // The tiles from low to high, both included, as one map.
+  // The tiles from low to high, both included, as one map with its surface.
   GridMap tiles(TileIndex low, TileIndex high) const;
 
   const GridParams& params() const { return params_; }
@@ -120,6 +113,7 @@ class OccupancyGrid {
   Tile& tileFor(TileIndex index);
   void writeWindow(const CellWindow& window);
   void addHit(const SurfaceHit& hit);
+  bool isSurface(const SurfacePoint& point, EvidenceCell cell) const;
   GridGeometry geometryOf(TileIndex low, TileIndex high) const;
 
   GridParams params_;

@@ -5,6 +5,7 @@
 #include <nav_msgs/OccupancyGrid.h>
 
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "cornerstone/MapTile.h"
 #include "cornerstone/mapping/grid_map.h"
@@ -23,9 +24,11 @@ GridMap fromOccupancyGrid(const nav_msgs::OccupancyGrid& message);
 void applyUpdate(const map_msgs::OccupancyGridUpdate& update, GridMap& map);
 
 // Tiles: square pieces of a grid at whole multiples of their size, as PNG with 254 steps of probability.
-// col and row: the tile's first cell, in cells from the map frame's origin.
-MapTile toTile(const cv::Mat1f& occupied, int col, int row);
+// first: the tile's first cell, in cells from the map frame's origin.
+MapTile toTile(const GridMap& tile, Cell first);
 // InputError when the picture is not one of `size` x `size` cells.
-cv::Mat1f fromTile(const MapTile& tile);
+cv::Mat1f cellsOf(const MapTile& tile);
+// InputError when a point is not finite or has no weight, and when there are more than cells.
+std::vector<SurfacePoint> surfaceOf(const MapTile& tile);
 
 }  // namespace cornerstone
