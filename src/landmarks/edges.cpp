@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "cornerstone/landmarks/edge_index.h"
+#include "cornerstone/landmarks/surface_edges.h"
 
 namespace cornerstone {
 namespace {
@@ -191,7 +192,7 @@ std::vector<EdgePoint> findEdges(const GridMap& map, const cv::Mat1b& states, co
   std::vector<EdgePoint> edges;
   edges.reserve(index.edges().size());
   for (const EdgePoint& face : index.edges()) edges.push_back(onLocalLine(face, index, radius_m));
-  return edges;
+  return map.surface.empty() ? edges : edgesOnSurface(EdgeIndex(edges, 0.5 * radius_m), map.surface);
 }
 
 }  // namespace cornerstone

@@ -13,7 +13,6 @@
 #include "cornerstone/registration/pose_search.h"
 #include "cornerstone/registration/proposals.h"
 #include "cornerstone/registration/robot_bodies.h"
-#include "cornerstone/registration/surface_edges.h"
 #include "cornerstone/registration/wall_search.h"
 
 namespace cornerstone {
@@ -117,12 +116,9 @@ double closeLead(const EvidencePair& maps, std::vector<Hypothesis> poses, const 
   return leadOf(scores, params.fine_cell_m);
 }
 
-// Like with like: on the surface where both maps know it, else on the edges as drawn. On all of them first:
-// that judges the answer. Around the focus then, where enough is seen there.
+// On all edges first: that judges the answer. Around the focus then, where enough is seen there.
 std::optional<RefinedPose> refine(const EvidencePair& maps, const Pose2& guess, RefinementOptions options) {
-  const bool on_surface = maps.reference.surface_edges && maps.current.surface_edges;
-  const EdgeIndex& reference = on_surface ? *maps.reference.surface_edges : maps.reference.all_edges;
-  const EdgeIndex& current = on_surface ? *maps.current.surface_edges : maps.current.all_edges;
+  const EdgeIndex &reference = maps.reference.all_edges, &current = maps.current.all_edges;
   options.cell_m = std::max(maps.reference.cell_m, maps.current.cell_m);
   RefinementOptions everywhere = options;
   everywhere.focus_in_current_m.reset();
@@ -161,10 +157,6 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
                       params.coarse_reach_m);
   EvidenceGrid fine(std::move(counts), edges, params.fine_reach_m);
   std::vector<double> directions = wallDirections(edges);
-  const double bucket_m = params.refine_reach_m / 3;
-  EdgeIndex all_edges(view.landmarks.edges, bucket_m);
-  std::optional<EdgeIndex> surface_edges;
-  if (!view.map.surface.empty()) surface_edges.emplace(edgesOnSurface(all_edges, view.map.surface), bucket_m);
   return {std::move(coarse),
           std::move(fine),
           std::move(edges),
@@ -172,8 +164,7 @@ MapEvidence gatherEvidence(const MapView& view, const RegistrationParams& params
           middle,
           view.map.geometry.resolution_m,
           std::move(directions),
-          std::move(all_edges),
-          std::move(surface_edges),
+          EdgeIndex(view.landmarks.edges, params.refine_reach_m / 3),
           view.way_m};
 }
 

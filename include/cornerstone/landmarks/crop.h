@@ -1,6 +1,8 @@
 // Parts of a map that share its cells: work is bounded by what is known, not by the grid that holds it.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <opencv2/core.hpp>
 
 #include "cornerstone/mapping/grid_map.h"
@@ -17,7 +19,13 @@ inline GridGeometry croppedGeometry(const GridGeometry& geometry, const cv::Rect
 }
 
 inline GridMap cropped(const GridMap& map, const cv::Rect& cells) {
-  return {croppedGeometry(map.geometry, cells), map.occupied(cells)};
+  GridMap crop{croppedGeometry(map.geometry, cells), map.occupied(cells)};
+  std::copy_if(map.surface.begin(), map.surface.end(), std::back_inserter(crop.surface),
+               [&](const SurfacePoint& point) {
+                 return crop.geometry.contains(
+                     crop.geometry.cellAt(Eigen::Vector2f(point.x_m, point.y_m).cast<double>()));
+               });
+  return crop;
 }
 
 // Its lower corner moved down to a multiple of `step` cells: squares of cells stay those of the whole map.

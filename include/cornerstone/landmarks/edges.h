@@ -1,7 +1,7 @@
 // Boundaries between free and occupied space (paper, section 3.1.1), at sub-cell precision.
 // Certain regions grow into uncertain cells, never into unseen ones; an edge is an occupied cell beside a
-// free one. Positions are metres of the map's frame. A map without free or without occupied cells has no
-// edges.
+// free one, on the surface that was measured there where the map knows it (surface_edges.h). Positions are
+// metres of the map's frame. A map without free or without occupied cells has no edges.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ struct EdgeParams {
 void describe(ParamVisitor& visitor, EdgeParams& params);
 
 struct EdgePoint {
-  Eigen::Vector2d position_m;  // between the occupied and the free cell, at sub-cell precision
+  Eigen::Vector2d position_m;  // of the boundary or the surface, at sub-cell precision
   Eigen::Vector2d normal;      // unit, from occupied to free
 };
 

@@ -3,7 +3,6 @@
 // contradicts, unknown says nothing. Counted in edges of the thinned maps, each about one square of wall.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "cornerstone/base/pose2.h"
@@ -16,14 +15,12 @@ namespace cornerstone {
 struct MapEvidence {
   EvidenceGrid coarse;
   EvidenceGrid fine;
-  std::vector<EdgePoint> edges;    // thinned, in an order without pattern
-  EdgeSamples samples;             // the same, for the grids
-  Eigen::Vector2d middle_m;        // mean of the edges
-  double cell_m;                   // of the map itself
-  std::vector<double> directions;  // of the walls (proposals.h)
-  EdgeIndex all_edges;             // of the map, as found
-  std::optional<EdgeIndex>
-      surface_edges;                   // the same on the surface measured; empty: the map does not know it
+  std::vector<EdgePoint> edges;        // thinned, in an order without pattern
+  EdgeSamples samples;                 // the same, for the grids
+  Eigen::Vector2d middle_m;            // mean of the edges
+  double cell_m;                       // of the map itself
+  std::vector<double> directions;      // of the walls (proposals.h)
+  EdgeIndex all_edges;                 // of the map, as found
   std::vector<Eigen::Vector2d> way_m;  // where the map's own robot has been; empty: not known
 };
 

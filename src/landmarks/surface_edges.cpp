@@ -1,4 +1,4 @@
-#include "cornerstone/registration/surface_edges.h"
+#include "cornerstone/landmarks/surface_edges.h"
 
 #include <cmath>
 
