@@ -6,6 +6,7 @@
 #include "cornerstone/landmarks/corner_candidates.h"
 #include "cornerstone/landmarks/corner_fit.h"
 #include "cornerstone/landmarks/crop.h"
+#include "cornerstone/landmarks/surface_corners.h"
 
 namespace cornerstone {
 namespace {
@@ -61,6 +62,9 @@ Landmarks detectLandmarks(const GridMap& map, const LandmarkParams& params) {
     corners.insert(corners.end(), fitted.begin(), fitted.end());
   }
   landmarks.corners = suppressNear(std::move(corners), params.suppression_m);
+  if (part.surface.empty()) return landmarks;
+  const SurfaceCorners on_surface(part.surface, params.arm_length_m);
+  for (CornerLandmark& corner : landmarks.corners) corner = on_surface.settled(corner);
   return landmarks;
 }
 

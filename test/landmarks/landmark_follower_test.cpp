@@ -5,7 +5,9 @@
 #include <cmath>
 #include <set>
 
+#include "cornerstone/mapping/occupancy_grid.h"
 #include "support/drawn_maps.h"
+#include "support/room_scan.h"
 
 namespace cornerstone {
 namespace {
@@ -57,6 +59,24 @@ TEST(LandmarkFollower, FindsWhatAWholeSearchFinds) {
     EXPECT_EQ(followed.edges.size(), whole.edges.size()) << x_m;
     EXPECT_EQ(cv::countNonZero(followed.states != whole.states), 0);
   }
+}
+
+// A robot turns in a room: its surface, too, is that of the newest map.
+TEST(LandmarkFollower, FindsWhatAWholeSearchFindsOnTheSurface) {
+  test::Room room;
+  room.addRectangle(0, 0, 4, 3);
+  OccupancyGrid grid({});
+  LandmarkFollower follower({});
+  for (int look = 0; look < 40; ++look) {
+    const Pose2 at{1.8 + 0.01 * look, 1.5, look * 9 * M_PI / 180};
+    grid.insert(test::scanOf(room, at), at);
+    const GridMap map = grid.snapshot();
+    const Landmarks& followed = follower.update(map, look);
+    if (look % 8 == 7) expectSameCorners(followed, detectLandmarks(map, {}));
+  }
+  ASSERT_EQ(follower.landmarks().corners.size(), 4u);
+  for (const CornerLandmark& corner : follower.landmarks().corners)
+    EXPECT_LT(room.distanceTo(corner.pose.translation()), 0.005);
 }
 
 TEST(LandmarkFollower, LooksOnlyWhereTheMapChanged) {
