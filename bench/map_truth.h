@@ -1,5 +1,5 @@
 // What a map is worth against the world it shows. Occupied: above 0.65. Map cells are placed in the world by
-// `world_from_map` alone: no alignment hides a drift.
+// `world_from_map` alone.
 #pragma once
 
 #include <vector>

@@ -119,7 +119,7 @@ MapTiles TilePublisher::messageOf(const GridState& state, const std::vector<Tile
   message.map_epoch = state.epoch;
   message.version = static_cast<std::uint32_t>(state.grid.version());
   message.resolution = state.grid.params().resolution_m;
-  for (const Eigen::Vector2d& place : state.way_m) {
+  for (const Eigen::Vector2d& place : state.mapper.way()) {
     geometry_msgs::Point32& told = message.way.emplace_back();
     told.x = static_cast<float>(place.x());
     told.y = static_cast<float>(place.y());
@@ -146,9 +146,8 @@ void MapPublisher::publish(const Mapper& mapper) {
   std_msgs::Header header;
   header.stamp = ros::Time::now();
   header.frame_id = map_frame_;
-  const std::vector<Eigen::Vector2d> way_m = mapper.way();
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    const GridState state{mapper.grid(i), epoch_base_ + mapper.epoch(), header, way_m};
+    const GridState state{mapper.grid(i), epoch_base_ + mapper.epoch(), header, mapper};
     for (const auto& map : levels_[i].maps) map->publish(state);
     levels_[i].tiles->publish(state);
   }

@@ -20,7 +20,7 @@ struct GridState {
   const OccupancyGrid& grid;
   std::uint32_t epoch = 0;
   std_msgs::Header header;
-  std::vector<Eigen::Vector2d> way_m;  // of the robot, in the map's frame
+  const Mapper& mapper;  // the grid is one of its own
 };
 
 // One grid as nav_msgs/OccupancyGrid on a topic, with updates and metadata. Work and messages are of the size
