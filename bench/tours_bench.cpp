@@ -1,4 +1,6 @@
 // Long tours with poor odometry: where the robot thinks it is at the end, and what its map is worth.
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,28 +18,18 @@ struct TourResult {
   double frame_ms = 0;
 };
 
-// Where a robot truly was, and where its map has that place.
-struct Place {
-  Pose2 world_from_base, map_from_base;
+// A robot's way, as it truly was and as it was mapped.
+struct Way {
+  std::vector<Eigen::Vector2d> true_m, mapped_m;
 };
 
-// The rigid motion that lays the way as mapped on the true one, by least squares.
-Pose2 fitOfWay(const std::vector<Place>& way) {
-  Eigen::Vector2d world_m(0, 0), map_m(0, 0);
-  for (const Place& place : way) {
-    world_m += place.world_from_base.translation() / static_cast<double>(way.size());
-    map_m += place.map_from_base.translation() / static_cast<double>(way.size());
-  }
-  double along = 0, across = 0;
-  for (const Place& place : way) {
-    const Eigen::Vector2d a = place.map_from_base.translation() - map_m,
-                          b = place.world_from_base.translation() - world_m;
-    along += a.dot(b);
-    across += a.x() * b.y() - a.y() * b.x();
-  }
-  const Pose2 turn{0, 0, std::atan2(across, along)};
-  const Eigen::Vector2d shift = world_m - turn * map_m;
-  return {shift.x(), shift.y(), turn.yaw_rad};
+// world_from_map by which the way as mapped lies on the true one, by least squares.
+Pose2 fitOfWay(const Way& way) {
+  const auto count = static_cast<Eigen::Index>(way.true_m.size());
+  const Eigen::Map<const Eigen::MatrixXd> truth(way.true_m.front().data(), 2, count),
+      mapped(way.mapped_m.front().data(), 2, count);
+  const Eigen::MatrixXd motion = Eigen::umeyama(mapped, truth, false);
+  return {motion(0, 2), motion(1, 2), std::atan2(motion(1, 0), motion(0, 0))};
 }
 
 // The default priors are those of measured wheels; these name the drift that is simulated.
@@ -51,15 +43,14 @@ MapperParams toldOfTheDrift() {
 TourResult ours(const RecordedTour& tour, const MapTruth& truth) {
   Mapper mapper(toldOfTheDrift());
   std::vector<double> frame_ms;
-  std::vector<Pose2> world_from_frames;
+  Way way;
   for (const TourLook& look : tour.looks) {
     frame_ms.push_back(look.chain_ms + elapsed_ms([&] { mapper.update(look.scan, look.odom_from_base); }));
-    if (mapper.graph().frames().size() > world_from_frames.size())
-      world_from_frames.push_back(look.world_from_base);
+    if (mapper.graph().frames().size() > way.true_m.size())
+      way.true_m.push_back(look.world_from_base.translation());
   }
-  std::vector<Place> way;
-  for (std::size_t i = 0; i < world_from_frames.size(); ++i)
-    way.push_back({world_from_frames[i], mapper.graph().frames()[i].map_from_base});
+  for (const KeyFrame& frame : mapper.graph().frames())
+    way.mapped_m.push_back(frame.map_from_base.translation());
   const Pose2 world_from_map = tour.worldFromOdom();
   const Pose2 end = world_from_map * mapper.pose().map_from_base;
   const GridMap map = mapper.map();
@@ -70,12 +61,13 @@ TourResult ours(const RecordedTour& tour, const MapTruth& truth) {
 TourResult theirs(const RecordedTour& tour, const MapTruth& truth) {
   mrpt::maps::COccupancyGridMap2D map = emptyMrptMap();
   std::vector<double> frame_ms;
-  std::vector<Place> way;
+  Way way;
   for (const TourLook& look : tour.looks) {
     frame_ms.push_back(look.peer_chain_ms + elapsed_ms([&] {
                          insertRanges(look.peer_ranges_m, tour.camera, look.odom_from_base, map);
                        }));
-    way.push_back({look.world_from_base, look.odom_from_base});
+    way.true_m.push_back(look.world_from_base.translation());
+    way.mapped_m.push_back(look.odom_from_base.translation());
   }
   const Pose2 world_from_map = tour.worldFromOdom();
   const Pose2 end = world_from_map * tour.looks.back().odom_from_base;

@@ -47,8 +47,7 @@ CornerLandmark SurfaceCorners::settled(const CornerLandmark& corner) const {
     fit = {};
     const Eigen::Matrix2d rotation = pose.rotation();
     for (auto point = first; point != last; ++point) {
-      const Eigen::Vector2d at_m = Eigen::Vector2f(point->x_m, point->y_m).cast<double>();
-      const Eigen::Vector2d p = rotation.transpose() * (at_m - pose.translation());
+      const Eigen::Vector2d p = rotation.transpose() * (point->position_m() - pose.translation());
       const int arm = p.x() >= p.y() ? 0 : 1;  // arm 0 along +x, its distance is p.y; arm 1 along +y
       const double along = p[arm], away = p[1 - arm];
       if (along < kClear_m || along >= arm_length_m_ || std::abs(away) > kAcross_m) continue;

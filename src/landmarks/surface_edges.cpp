@@ -20,7 +20,7 @@ std::vector<EdgePoint> edgesOnSurface(const EdgeIndex& edges, const std::vector<
   std::vector<EdgePoint> moved = edges.edges();
   std::vector<WeightedOffset> offsets(moved.size());
   for (const SurfacePoint& point : surface) {
-    const Eigen::Vector2d at_m = Eigen::Vector2f(point.x_m, point.y_m).cast<double>();
+    const Eigen::Vector2d at_m = point.position_m();
     const auto weight = static_cast<double>(point.weight);
     edges.forEachNear(at_m, std::hypot(kAlong_m, kAcross_m), [&](const EdgePoint& edge) {
       const Eigen::Vector2d from_edge_m = at_m - edge.position_m;

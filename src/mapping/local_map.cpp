@@ -33,8 +33,7 @@ void draw(const LocalMap& local, std::size_t level, GridMap& map) {
       if (std::abs(here - kUnseen) > std::abs(known - kUnseen)) known = here;
     }
   for (const SurfacePoint& point : part.surface) {
-    const Eigen::Vector2f at_m =
-        (local.mapFromLocal() * Eigen::Vector2f(point.x_m, point.y_m).cast<double>()).cast<float>();
+    const Eigen::Vector2f at_m = (local.mapFromLocal() * point.position_m()).cast<float>();
     map.surface.push_back({at_m.x(), at_m.y(), point.weight});
   }
 }

@@ -12,15 +12,6 @@ namespace {
 constexpr float kMaxSurfaceWeight = 1e5F;  // 1/m^2, 3 mm: older looks fade, so that surfaces can move
 constexpr double kSurfaceOccupied = 0.3;   // P from which a cell's surface point counts
 
-// Whether a surface point has changed by what matters to others, who are told of changed tiles only: cells
-// that are surely occupied no longer change while their surface is still being found.
-bool toldApart(const SurfacePoint& before, const SurfacePoint& now) {
-  constexpr float kStepsPerMetre = 200;  // 5 mm
-  return std::lround(kStepsPerMetre * before.x_m) != std::lround(kStepsPerMetre * now.x_m) ||
-         std::lround(kStepsPerMetre * before.y_m) != std::lround(kStepsPerMetre * now.y_m) ||
-         std::ilogb(before.weight) != std::ilogb(now.weight);
-}
-
 bool finite(const RangeScan& scan) {
   return std::all_of(scan.beams.begin(), scan.beams.end(), [](const Beam& beam) {
     return std::isfinite(beam.bearing_rad) && beam.width_rad > 0 &&
@@ -258,12 +249,10 @@ void OccupancyGrid::addHit(const SurfaceHit& hit) {
   // What is being cleared is forgotten, so that a thing put there later has its own place.
   if (EvidenceScale::logOddsOf(*tile.at({hit.cell.col - first.col, hit.cell.row - first.row})) < 0)
     point.weight = 0;
-  const SurfacePoint before = point;
   const double gain = hit.weight / (hit.weight + static_cast<double>(point.weight));
   point.x_m += static_cast<float>(gain * (hit.point_m.x() - static_cast<double>(point.x_m)));
   point.y_m += static_cast<float>(gain * (hit.point_m.y() - static_cast<double>(point.y_m)));
   point.weight = std::min(kMaxSurfaceWeight, point.weight + static_cast<float>(hit.weight));
-  if (toldApart(before, point)) tile.version = version_;
 }
 
 std::vector<SurfacePoint> OccupancyGrid::readSurface(const CellWindow& window) const {

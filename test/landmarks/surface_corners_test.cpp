@@ -61,8 +61,7 @@ TEST(SurfaceCorners, StaysWhereTheSurfaceOfAnArmIsNotKnown) {
   expectAsItWas(surfaceAlong(kTruth, 0.2));
   std::vector<SurfacePoint> one_arm;
   for (const SurfacePoint& point : surfaceAlong(kTruth, 1))
-    if ((kTruth.inverse() * Eigen::Vector2f(point.x_m, point.y_m).cast<double>()).y() < 0.01)
-      one_arm.push_back(point);
+    if ((kTruth.inverse() * point.position_m()).y() < 0.01) one_arm.push_back(point);
   ASSERT_GT(one_arm.size(), 10u);
   expectAsItWas(one_arm);
 }

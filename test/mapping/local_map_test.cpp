@@ -69,7 +69,7 @@ TEST(LocalMap, TheMapIsComposedOfAllLocalMaps) {
   }
   EXPECT_EQ(both.surface.size(), alone.surface.size() + maps[1].grid().snapshot().surface.size());
   for (const SurfacePoint& point : both.surface) {
-    const Eigen::Vector2d at_m = Eigen::Vector2f(point.x_m, point.y_m).cast<double>();
+    const Eigen::Vector2d at_m = point.position_m();
     EXPECT_LT(room.distanceTo(at_m), 0.05) << at_m.transpose();
   }
   EXPECT_LT(at(both, 1, 2.22), kFree);

@@ -153,24 +153,6 @@ TEST(OccupancyGrid, TilesKeepTheirPlaceAndTellWhatChanged) {
   }
 }
 
-TEST(OccupancyGrid, ASurfaceIsToldAgainOnlyWhileItIsBeingFound) {
-  OccupancyGrid grid({});
-  int told_for_the_surface_alone = 0;
-  for (int look = 0; look < 1000; ++look) {
-    const cv::Mat1f before = grid.snapshot().occupied;
-    const std::uint64_t version = grid.version();
-    grid.insert(wallAt(2.012, 0.04), {});
-    const cv::Mat1f after = grid.snapshot().occupied;
-    const bool same_cells = before.size() == after.size() && cv::norm(before, after, cv::NORM_INF) == 0;
-    told_for_the_surface_alone += same_cells && !grid.changedTiles(version).empty();
-  }
-  EXPECT_GT(told_for_the_surface_alone, 0) << "cells are sure long before their surface is";
-  EXPECT_LT(told_for_the_surface_alone, 50);
-  const std::uint64_t version = grid.version();
-  grid.insert(wallAt(2.012, 0.04), {});
-  EXPECT_TRUE(grid.changedTiles(version).empty()) << "nothing is new";
-}
-
 TEST(OccupancyGrid, TileOfNegativeCells) {
   EXPECT_EQ(tileOf({0, 63}), (TileIndex{0, 0}));
   EXPECT_EQ(tileOf({-1, 64}), (TileIndex{-1, 1}));

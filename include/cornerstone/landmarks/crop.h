@@ -22,8 +22,7 @@ inline GridMap cropped(const GridMap& map, const cv::Rect& cells) {
   GridMap crop{croppedGeometry(map.geometry, cells), map.occupied(cells)};
   std::copy_if(map.surface.begin(), map.surface.end(), std::back_inserter(crop.surface),
                [&](const SurfacePoint& point) {
-                 return crop.geometry.contains(
-                     crop.geometry.cellAt(Eigen::Vector2f(point.x_m, point.y_m).cast<double>()));
+                 return crop.geometry.contains(crop.geometry.cellAt(point.position_m()));
                });
   return crop;
 }

@@ -17,6 +17,7 @@ struct SurfacePoint {
   float x_m = 0;  // in the map frame
   float y_m = 0;
   float weight = 0;  // 1 / variance in 1/m^2; 0: none
+  Eigen::Vector2d position_m() const { return Eigen::Vector2f(x_m, y_m).cast<double>(); }
 };
 
 struct GridMap {

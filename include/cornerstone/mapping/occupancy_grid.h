@@ -88,7 +88,7 @@ class OccupancyGrid {
   std::uint64_t version() const { return version_; }  // rises with every change
   GridGeometry geometry() const;                      // all tiles; 0 x 0 cells when empty
   GridMap snapshot() const;                           // of geometry()
-  // Tiles of which cells or the surface changed after `version` (0: all), in a fixed order.
+  // Tiles with cells changed after `version` (0: all), in a fixed order. Their surface goes with them.
   std::vector<TileIndex> changedTiles(std::uint64_t version) const;
   GridMap tile(TileIndex index) const;  // kTileCells x kTileCells; kUnseen where there is nothing
   // The tiles from low to high, both included, as one map with its surface.
