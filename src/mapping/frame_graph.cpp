@@ -10,11 +10,6 @@ namespace {
 
 constexpr std::size_t kLooksKept = 10;  // a box that goes is free after 10 looks
 
-bool alike(const Pose2& a, const Pose2& b, const FrameGraphParams& params) {
-  return (a.translation() - b.translation()).norm() <= params.match_distance_m &&
-         std::abs(wrapAngle(a.yaw_rad - b.yaw_rad)) <= params.match_turn_rad;
-}
-
 }  // namespace
 
 void describe(ParamVisitor& visitor, FrameGraphParams& params) {
@@ -56,6 +51,11 @@ void requireValid(const FrameGraphParams& params) {
   requireValid(params.match);
 }
 
+bool mayMatch(const Pose2& a, const Pose2& b, const FrameGraphParams& params) {
+  return (a.translation() - b.translation()).norm() <= params.match_distance_m &&
+         std::abs(wrapAngle(a.yaw_rad - b.yaw_rad)) <= params.match_turn_rad;
+}
+
 FrameGraph::FrameGraph(const FrameGraphParams& params, const OdometryNoise& odometry)
     : params_(params), odometry_(odometry) {
   requireValid(params);
@@ -72,7 +72,7 @@ bool FrameGraph::frameDue(const Pose2& odom_from_base) const {
 std::vector<std::size_t> FrameGraph::framesNearby(const Pose2& map_from_base) const {
   std::vector<std::size_t> nearby;
   for (std::size_t i = 0; i < frames_.size(); ++i)
-    if (alike(frames_[i].map_from_base, map_from_base, params_)) nearby.push_back(i);
+    if (mayMatch(frames_[i].map_from_base, map_from_base, params_)) nearby.push_back(i);
   const auto most = static_cast<std::size_t>(params_.match_tries);
   if (nearby.size() <= most) return nearby;
   std::vector<std::size_t> spread;  // over all, the newest among them
@@ -146,6 +146,7 @@ void FrameGraph::adopt(const GraphSolution& solution) {
         i < solution.map_from_base.size() ? solution.map_from_base[i] : correction * frames_[i].map_from_base;
   rates_ = solution.rates;
   calibration_ = solution.calibration;
+  matches_.insert(matches_.end(), solution.loop.begin(), solution.loop.end());
 }
 
 Pose2 correctionOf(const GraphSolution& solution, const std::vector<KeyFrame>& frames) {

@@ -63,12 +63,14 @@ std::vector<KeyFrame> allButTheLast(const std::vector<KeyFrame>& frames) {
 }  // namespace
 
 std::future<std::optional<MapRedraw>> startRedraw(FrameGraph& graph, const LocalMap& blank,
-                                                  const RedrawLimit& limit) {
+                                                  const RedrawTask& task) {
   return std::async(std::launch::async,
                     [problem = graph.beginSolution(), frames = allButTheLast(graph.frames()), blank,
-                     limit]() -> std::optional<MapRedraw> {
-                      std::optional<GraphSolution> solution = solve(problem);
-                      if (!solution || !movesTheMap(problem, *solution, limit)) return std::nullopt;
+                     task]() -> std::optional<MapRedraw> {
+                      std::optional<GraphSolution> solution;
+                      if (task.loop) solution = closeLoop(problem, *task.loop, task.max_strain_sigmas);
+                      if (!solution) solution = solve(problem);
+                      if (!solution || !movesTheMap(problem, *solution, task.limit)) return std::nullopt;
                       MapRedraw redraw(blank, std::move(*solution));
                       redraw.goOn(frames, std::numeric_limits<int>::max());
                       return redraw;

@@ -23,6 +23,7 @@ void describe(ParamVisitor& visitor, MapperParams& params) {
   visitor.group("odometry", [&] { describe(visitor, params.odometry); });
   visitor.group("graph", [&] { describe(visitor, params.graph); });
   visitor.group("relocalisation", [&] { describe(visitor, params.relocalisation); });
+  visitor.group("loop", [&] { describe(visitor, params.loop); });
   visitor.field("fit_scans", params.fit_scans);
   visitor.field("max_contradictions", params.max_contradictions);
 }
@@ -31,6 +32,7 @@ namespace {
 
 // Odometry that claims more has gone astray; cells are counted in 32 bits and MRPT's in floats.
 constexpr double kFarthest_m = 5000;
+constexpr int kLeastScans = 5;        // until what is done beside is taken up
 constexpr double kWaySquare_m = 0.2;  // of a way: a robot's radius
 
 void requireSane(const Pose2& odom_from_base) {
@@ -54,6 +56,7 @@ Mapper::Mapper(const MapperParams& params, std::size_t levels)
       graph_(params.graph, params.odometry) {
   requireValid(params.fit);
   requireValid(params.relocalisation);
+  requireValid(params.loop);
   requireWithin(params.max_contradictions, 1, 1e6, "max_contradictions");
 }
 
@@ -108,7 +111,10 @@ MapperUpdate Mapper::update(const RangeScan& raw, const Pose2& odom_from_base) {
     last_inserted_ = filter_.pose().map_from_base;
     if (!remembers) notePlace();
   }
-  if (remembers) straighten();
+  if (remembers) {
+    lookForLoop();
+    straighten();
+  }
   map_from_odom_ = filter_.pose().map_from_base * odom_from_base.inverse();
   return {map_from_odom_, insert, fit.state == FitState::kFitted, fit.matches, filter_.pose().covariance};
 }
@@ -193,11 +199,32 @@ void Mapper::straighten() {
     redraw();
   } else if (beside_.valid()) {
     if (--scans_to_take_up_ <= 0) redraw_ = beside_.get();
-  } else if (graph_.solveDue()) {
-    constexpr int kLeastScans = 5, kFramesPerScan = 30;
+  } else if (graph_.solveDue() || found_loop_) {
+    constexpr int kFramesPerScan = 30;
     scans_to_take_up_ = kLeastScans + static_cast<int>(graph_.frames().size()) / kFramesPerScan;
     beside_ = startRedraw(graph_, LocalMap(params_.grid, current().levelCount()),
-                          {params_.graph.redraw_shift_m, params_.graph.match_distance_m});
+                          {std::exchange(found_loop_, std::nullopt),
+                           params_.loop.max_strain_sigmas,
+                           {params_.graph.redraw_shift_m, params_.graph.match_distance_m}});
+  }
+}
+
+void Mapper::lookForLoop() {
+  constexpr std::size_t kSearchAfterFrames = 10;  // 2 m of way
+  const std::size_t frames = graph_.frames().size();
+  if (loop_beside_.valid()) {
+    if (--scans_to_loop_ > 0) return;
+    LoopSearch search = loop_beside_.get();
+    if (search.sure) sure_frame_ = search.now;
+    found_loop_ = std::move(search.found);
+  } else if (!found_loop_ && frames >= searched_frames_ + kSearchAfterFrames) {
+    searched_frames_ = frames;
+    std::optional<OpenLoop> loop = openLoop(graph_, sure_frame_, params_.loop);
+    if (!loop) return;
+    scans_to_loop_ = kLeastScans;
+    loop_beside_ = std::async(std::launch::async, findLoop, std::move(*loop),
+                              LoopSearchParams{params_.loop, params_.graph, params_.relocalisation,
+                                               params_.fit, params_.grid, graph_.calibration()});
   }
 }
 
@@ -220,6 +247,10 @@ void Mapper::reset() {
   graph_ = FrameGraph(params_.graph, params_.odometry);
   redraw_.reset();
   beside_ = {};
+  loop_beside_ = {};
+  found_loop_.reset();
+  sure_frame_ = 0;
+  searched_frames_ = 0;
   redraws_ = 0;
   loaded_ = false;
   map_from_odom_ = {};

@@ -49,8 +49,8 @@ std::vector<Eigen::Vector2d> endsOf(const RangeScan& scan, const GridParams& gri
 // What each cell says to a beam end that falls on it: +1 a surface within reach, -1 free floor, 0 unknown.
 class Votes {
  public:
-  Votes(const OccupancyGrid& grid, const CellWindow& window, double reach_m)
-      : at_(window.geometry), votes_(window.cells.size()) {
+  Votes(const OccupancyGrid& grid, const CellWindow& window, double reach_m, double min_known_share)
+      : at_(window.geometry), votes_(window.cells.size()), min_known_share_(min_known_share) {
     for (std::size_t i = 0; i < votes_.size(); ++i)
       votes_[i] = EvidenceScale::logOddsOf(window.cells[i]) < 0 ? -1 : 0;
     const std::vector<SurfacePoint> surface = grid.readSurface(window);
@@ -60,13 +60,21 @@ class Votes {
   }
 
   double agreeing(const std::vector<Eigen::Vector2d>& ends_m, const Pose2& map_from_base) const {
+    return agreeing(ends_m, map_from_base, min_known_share_);
+  }
+
+  // min_known_share: of the ends; where the map knows fewer, those missing count against the pose.
+  double agreeing(const std::vector<Eigen::Vector2d>& ends_m, const Pose2& map_from_base,
+                  double min_known_share) const {
     const Eigen::Matrix2d rotation = map_from_base.rotation();
-    int sum = 0;
+    int sum = 0, known = 0;
     for (const Eigen::Vector2d& end_m : ends_m) {
       const Cell cell = at_.cellAt(rotation * end_m + map_from_base.translation());
-      if (at_.contains(cell)) sum += votes_[indexOf(cell)];
+      if (!at_.contains(cell)) continue;
+      sum += votes_[indexOf(cell)];
+      known += votes_[indexOf(cell)] != 0;
     }
-    return static_cast<double>(sum) / static_cast<double>(ends_m.size());
+    return sum / std::max<double>(known, min_known_share * static_cast<double>(ends_m.size()));
   }
 
  private:
@@ -86,6 +94,7 @@ class Votes {
 
   GridGeometry at_;
   std::vector<std::int8_t> votes_;
+  double min_known_share_;
 };
 
 CellWindow windowAround(const OccupancyGrid& grid, const std::vector<Eigen::Vector2d>& ends_m,
@@ -170,7 +179,8 @@ Relocalisation relocalise(const LookOnMap& look, const SearchWindow& around, con
   const std::vector<Eigen::Vector2d> ends_m = endsOf(scan, grid.params());
   if (!(around.reach_m > 0) || grid.empty() || static_cast<int>(ends_m.size()) < fit.min_matches) return {};
   const CellWindow window = windowAround(grid, ends_m, around.map_from_base, around.reach_m);
-  const Votes wide(grid, window, kWideReach_m), fine(grid, window, kFineReach_m);
+  const Votes wide(grid, window, kWideReach_m, around.min_known_share),
+      fine(grid, window, kFineReach_m, around.min_known_share);
   std::vector<Candidate> best;
   for (const Candidate& start :
        bestDifferent(search(wide, ends_m, around.map_from_base,
@@ -186,12 +196,16 @@ Relocalisation relocalise(const LookOnMap& look, const SearchWindow& around, con
       Eigen::Vector3d(2 * kWideStep_m, 2 * kWideStep_m, 2 * kWideStep_rad).cwiseAbs2().asDiagonal();
   const ScanFit fitted = fitScan(scan, grid, {{best.front().map_from_base, vague}, 1}, fit);
   const double agreeing = fine.agreeing(ends_m, fitted.pose.map_from_base);
-  if (agreeing < params.min_agreeing_share || agreeing < fine.agreeing(ends_m, around.map_from_base) + kGain)
-    return {};
-  if (fitted.state != FitState::kFitted || widest(fitted.pose.covariance) > kWidest_m ||
-      (best.size() > 1 && best[1].agreeing > params.max_rival_share * best[0].agreeing))
-    return {true, std::nullopt, agreeing};
-  return {true, fitted.pose, agreeing};
+  if (agreeing < params.min_agreeing_share) return {};
+  const bool rivalled = best.size() > 1 && best[1].agreeing > params.max_rival_share * best[0].agreeing;
+  const bool fits = fitted.state == FitState::kFitted && widest(fitted.pose.covariance) <= kWidest_m;
+  Relocalisation found;
+  found.agreeing = agreeing;
+  found.elsewhere =
+      agreeing >= fine.agreeing(ends_m, around.map_from_base, around.min_known_share_here) + kGain;
+  found.here = !found.elsewhere && fits && !different(fitted.pose.map_from_base, around.map_from_base);
+  if (found.elsewhere && fits && !rivalled) found.pose = fitted.pose;
+  return found;
 }
 
 }  // namespace cornerstone

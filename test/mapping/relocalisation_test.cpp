@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cornerstone/base/errors.h"
-#include "cornerstone/mapping/mapper.h"
-#include "cornerstone/scan/laser_scan.h"
+#include "support/laser.h"
 #include "support/room_scan.h"
 
 namespace cornerstone {
@@ -79,17 +78,6 @@ TEST(Relocalisation, WrongParametersAreNamed) {
   }
 }
 
-RangeScan laserScan(const test::Room& room, const Pose2& map_from_base) {
-  LaserRanges laser;
-  laser.angle_min_rad = -M_PI / 2;
-  laser.angle_increment_rad = kDegree;
-  laser.range_max_m = 20;
-  for (int i = 0; i <= 180; ++i)
-    laser.ranges_m.push_back(static_cast<float>(
-        room.rangeFrom(map_from_base.translation(), map_from_base.yaw_rad + (i - 90) * kDegree).value_or(0)));
-  return scanFromRanges(laser, {});
-}
-
 // Looks around at two places, then somebody moves the robot, of which odometry knows nothing.
 struct Moved {
   Pose2 error;  // of the pose at the end
@@ -113,7 +101,7 @@ Moved moveByHand(const Pose2& slip, const RelocalisationParams& relocalisation =
     for (int i = 0; i < times; ++i) {
       truth = truth * step;
       odom = odom * step;
-      mapper.update(laserScan(room, truth), odom);
+      mapper.update(test::laserScan(room, truth), odom);
     }
   };
   look({0, 0, 10 * kDegree}, 36);

@@ -8,6 +8,7 @@
 
 #include "cornerstone/ros/nodelet_params.h"
 #include "cornerstone/ros/simulation_messages.h"
+#include "support/laid_over.h"
 
 namespace cornerstone {
 namespace {
@@ -54,26 +55,13 @@ TEST(ShippedParameters, EveryFileIsTheDefaultsOfItsStruct) {
   expectDefaults<SimulatorParams>("simulator.yaml");
 }
 
-// Puts what `over` has in the place of what `whole` has; false: a key that `whole` does not know.
-bool laidOver(YAML::Node whole, const YAML::Node& over) {
-  for (const auto& member : over) {
-    const auto name = member.first.as<std::string>();
-    if (!whole[name]) return false;
-    if (!member.second.IsMap())
-      whole[name] = member.second;
-    else if (!laidOver(whole[name], member.second))
-      return false;
-  }
-  return true;
-}
-
 TEST(ShippedParameters, ALasersFileLiesOverTheMappers) {
   YAML::Node whole = YAML::LoadFile(kConfig + "mapper.yaml");
-  ASSERT_TRUE(laidOver(whole, YAML::LoadFile(kConfig + "mapper_laser.yaml")));
+  ASSERT_TRUE(test::laidOver(whole, YAML::LoadFile(kConfig + "mapper_laser.yaml")));
   const auto params = readParams<OccupancyMapperParams>(whole, "mapper_laser.yaml");
   EXPECT_EQ(params.input, "scan");
   EXPECT_NO_THROW(Mapper(params.mapper));
-  EXPECT_FALSE(laidOver(whole, YAML::Load("{mapper: {grid: {max_rnage_m: 15}}}")));
+  EXPECT_FALSE(test::laidOver(whole, YAML::Load("{mapper: {grid: {max_rnage_m: 15}}}")));
 }
 
 TEST(ShippedParameters, NoFileIsForgotten) {

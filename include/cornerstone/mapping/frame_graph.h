@@ -42,6 +42,9 @@ struct FrameGraphParams {
 void describe(ParamVisitor& visitor, FrameGraphParams& params);
 void requireValid(const FrameGraphParams& params);  // throws InputError naming the parameter
 
+// Whether frames at these poses may see the same pieces of wall.
+bool mayMatch(const Pose2& a, const Pose2& b, const FrameGraphParams& params);
+
 class FrameGraph {
  public:
   FrameGraph(const FrameGraphParams& params, const OdometryNoise& odometry);
@@ -60,7 +63,8 @@ class FrameGraph {
 
   const std::vector<KeyFrame>& frames() const { return frames_; }
   const ScanCalibration& calibration() const { return calibration_; }
-  std::size_t matchCount() const { return matches_.size(); }
+  const std::vector<GraphMatch>& matches() const { return matches_; }
+  const FrameGraphParams& params() const { return params_; }
 
  private:
   GraphProblem problem() const;

@@ -41,6 +41,7 @@ struct GraphProblem {
   ScanCalibration calibration;
   double calibration_sigma_per_m = 0;  // 0: nothing is asked of it
   OdometryNoise odometry;
+  std::size_t held_matches = 0;  // the last of them, which count in full however far off they begin
   GraphWeights weights;
 };
 
@@ -48,9 +49,11 @@ struct GraphSolution {
   std::vector<Pose2> map_from_base;  // of each frame
   Eigen::Vector3d rates = Eigen::Vector3d::Zero();
   ScanCalibration calibration;
+  std::vector<GraphMatch> loop;  // matches that it found itself (loop_closure.h)
 };
 
 std::optional<GraphSolution> solve(const GraphProblem& problem);  // none: no frame, or no finite solution
+double costOf(const GraphProblem& problem);  // half the squares' sum at its beginning, as the losses have it
 
 // The pose of a frame as its matches with earlier ones, where they stand, and the prior have it; the prior
 // where there are none.

@@ -6,8 +6,8 @@
 #include <future>
 #include <optional>
 
-#include "cornerstone/mapping/frame_graph.h"
 #include "cornerstone/mapping/local_map.h"
+#include "cornerstone/mapping/loop_closure.h"
 
 namespace cornerstone {
 
@@ -35,9 +35,15 @@ struct RedrawLimit {
   double at_m = 0;  // from the robot: what a turn moves
 };
 
+struct RedrawTask {
+  std::optional<FoundLoop> loop;  // to be closed
+  double max_strain_sigmas = 0;   // in doing so
+  RedrawLimit limit;
+};
+
 // Solves and draws all frames but the last, which still gathers looks, into a copy of `blank`. None: no
 // solution, or nothing moves.
 std::future<std::optional<MapRedraw>> startRedraw(FrameGraph& graph, const LocalMap& blank,
-                                                  const RedrawLimit& limit);
+                                                  const RedrawTask& task);
 
 }  // namespace cornerstone

@@ -8,8 +8,8 @@
 // Wheels slip, and robots are pushed: where scan and odometry exclude each other the robot is sought on the
 // map (relocalisation.h).
 //
-// Behind that a graph of key frames bends the whole way so that all looks agree (frame_graph.h); when it
-// moves them, the map is drawn anew beside the running one, which goes on until the new one takes its place:
+// Behind that a graph of key frames bends the whole way so that all looks agree (frame_graph.h), also where a
+// laser's robot comes back to an old place after a way that drifted (loop_closure.h); when it moves them, the map is drawn anew beside the running one, which goes on until the new one takes its place:
 // then the pose and map_from_odom step by what was corrected. In a loaded map there is no graph: its cells do
 // not move.
 #pragma once
@@ -32,6 +32,7 @@ struct MapperParams {
   OdometryNoise odometry;
   FrameGraphParams graph;
   RelocalisationParams relocalisation;
+  LoopParams loop;
   bool fit_scans = true;        // false: odometry as it is (for robots that localise by other means)
   int max_contradictions = 10;  // scans in a row that fit ill before they are taken for a changed world
 };
@@ -81,6 +82,7 @@ class Mapper {
   void notePlace();
   void remember(const RangeScan& scan, const Pose2& odom_from_base);  // as or with a key frame
   void straighten();                                                  // the map, by what the graph knows
+  void lookForLoop();
   void redraw();
   LookMotion motion() const;  // since the last look that was inserted
   double newShare(const RangeScan& scan) const;
@@ -94,7 +96,12 @@ class Mapper {
   FrameGraph graph_;
   std::future<std::optional<MapRedraw>> beside_;  // solves and draws in a thread of its own
   int scans_to_take_up_ = 0;
-  std::optional<MapRedraw> redraw_;  // its last looks
+  std::future<LoopSearch> loop_beside_;  // looks for a loop in a thread of its own
+  int scans_to_loop_ = 0;
+  std::size_t searched_frames_ = 0;      // when a loop was last looked for
+  std::size_t sure_frame_ = 0;           // the last that was seen to stand on the old map where it should
+  std::optional<FoundLoop> found_loop_;  // to be closed when the map is drawn anew
+  std::optional<MapRedraw> redraw_;      // its last looks
   int redraws_ = 0;
   bool loaded_ = false;
   std::optional<Pose2> last_odom_;       // odom_from_base of the last scan

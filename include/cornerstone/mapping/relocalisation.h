@@ -42,11 +42,14 @@ struct SearchWindow {
   Pose2 map_from_base;  // its middle: where odometry puts the robot
   double reach_m = 0;
   double reach_rad = M_PI;
+  // Of the ends: where the map knows fewer, those missing count against a pose, and against odometry's.
+  double min_known_share = 1, min_known_share_here = 1;
 };
 
 struct Relocalisation {
   bool elsewhere = false;            // the scan fits well at another pose than odometry's, perhaps at several
-  std::optional<PoseEstimate> pose;  // map_from_base by the scan fit, where the scan singles one out
+  bool here = false;                 // it fits nowhere better than at odometry's pose
+  std::optional<PoseEstimate> pose;  // map_from_base by the scan fit, where the scan singles another one out
   double agreeing = 0;               // of the ends, at the best pose
 };
 Relocalisation relocalise(const LookOnMap& look, const SearchWindow& window, const ScanFitParams& fit,
