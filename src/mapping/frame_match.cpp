@@ -44,50 +44,62 @@ std::pair<double, double> ratesAtMean(const LookAtWall& earlier, const LookAtWal
   return {rate(earlier, e / (e + l)), rate(later, l / (e + l))};
 }
 
+// A piece of the later look, corrected by the calibration, in its base frame.
+struct LaterPiece {
+  Eigen::Vector2d point_m;
+  const WallPiece* piece;
+};
+
 class Matching {
  public:
   Matching(const KeyFrame& earlier, const KeyFrame& later, const ScanCalibration& calibration,
            const FrameMatchParams& params)
-      : earlier_(earlier),
-        later_(later),
-        calibration_(calibration.offset_per_m, calibration.slope_per_m),
-        params_(params),
-        sensor_from_base_(earlier.base_from_sensor.inverse()) {}
+      : earlier_(earlier), later_(later), params_(params), to_sensor_(earlier.base_from_sensor.inverse()) {
+    const Eigen::Vector2d by(calibration.offset_per_m, calibration.slope_per_m);
+    walls_m_.reserve(earlier.pieces.size());
+    for (const WallPiece& wall : earlier.pieces) walls_m_.push_back(wall.point_m + wall.by_calibration * by);
+    pieces_.reserve(later.pieces.size());
+    for (const WallPiece& piece : later.pieces)
+      if (piece.valid) pieces_.push_back({piece.point_m + piece.by_calibration * by, &piece});
+  }
 
   Sums sumAt(const Pose2& earlier_from_later, double gate_m) const {
     Sums sums;
-    const Eigen::Matrix2d rotation = earlier_from_later.rotation();
-    const Eigen::Vector2d later_at_m = later_.base_from_sensor.translation();
-    for (const WallPiece& piece : later_.pieces) {
-      if (!piece.valid) continue;
-      const Eigen::Vector2d arm_m = rotation * (piece.point_m + piece.by_calibration * calibration_);
-      const Eigen::Vector2d point_m = earlier_from_later.translation() + arm_m;
-      const Eigen::Vector2d in_sensor_m = sensor_from_base_ * point_m;
-      const double bearing_rad = std::atan2(in_sensor_m.y(), in_sensor_m.x());
-      if (bearing_rad < earlier_.bearings_rad.front() || bearing_rad > earlier_.bearings_rad.back()) continue;
+    const PointMotion motion(earlier_from_later);
+    const Eigen::Vector2d earlier_at_m = earlier_.base_from_sensor.translation();
+    const Eigen::Vector2d later_at_m = motion * later_.base_from_sensor.translation();
+    std::size_t beam = 0;
+    for (const auto& [in_later_m, piece] : pieces_) {
+      const Eigen::Vector2d arm_m = motion.rotation * in_later_m;
+      const Eigen::Vector2d point_m = motion.translation_m + arm_m;
+      const auto nearest = earlier_.bearings.nearest(to_sensor_ * point_m, beam);
+      if (!nearest) continue;
       ++sums.in_view;
-      const WallPiece& wall = earlier_.pieces[nearestBeam(bearing_rad)];
-      const Eigen::Vector2d as_later = rotation * piece.normal;
+      beam = *nearest;
+      const WallPiece& wall = earlier_.pieces[beam];
+      if (!wall.valid) continue;
+      const Eigen::Vector2d as_later = motion.rotation * piece->normal;
       const double cosine = wall.normal.dot(as_later);
-      if (!wall.valid || std::abs(cosine) < params_.min_normal_cosine) continue;
+      if (std::abs(cosine) < params_.min_normal_cosine) continue;
       // Of both looks: the noise of one normal alone pretends to see motion along the wall.
-      const double e2 = wall.sigma_m * wall.sigma_m, l2 = piece.sigma_m * piece.sigma_m;
+      const double e2 = wall.sigma_m * wall.sigma_m, l2 = piece->sigma_m * piece->sigma_m;
       const Eigen::Vector2d normal = (l2 * wall.normal + std::copysign(e2, cosine) * as_later).normalized();
-      const Eigen::Vector2d wall_m = wall.point_m + wall.by_calibration * calibration_;
+      const Eigen::Vector2d& wall_m = walls_m_[beam];
       const double residual_m = normal.dot(point_m - wall_m);
       if (std::abs(residual_m) > gate_m) continue;
-      const auto [by_earlier, by_later] = ratesAtMean(
-          {residual_m, wall.sigma_m, normal.dot(wall_m - earlier_.base_from_sensor.translation())},
-          {-residual_m, piece.sigma_m, normal.dot(point_m - earlier_from_later * later_at_m)});
+      const auto [by_earlier, by_later] =
+          ratesAtMean({residual_m, wall.sigma_m, normal.dot(wall_m - earlier_at_m)},
+                      {-residual_m, piece->sigma_m, normal.dot(point_m - later_at_m)});
       const double variance_m2 = std::pow(by_earlier * wall.sigma_m, 2) +
-                                 std::pow(by_later * piece.sigma_m, 2) +
+                                 std::pow(by_later * piece->sigma_m, 2) +
                                  params_.wall_sigma_m * params_.wall_sigma_m;
       const double loss =
           1 + residual_m * residual_m / (variance_m2 * params_.loss_sigmas * params_.loss_sigmas);
       const double weight = 1 / (loss * variance_m2 * later_.correlated_beams);
       Vector5d row;
       row << normal, normal.y() * arm_m.x() - normal.x() * arm_m.y(),
-          (by_later * rotation * piece.by_calibration - by_earlier * wall.by_calibration).transpose() *
+          (by_later * motion.rotation * piece->by_calibration - by_earlier * wall.by_calibration)
+                  .transpose() *
               normal;
       sums.squares += weight * row * row.transpose();
       sums.gradient += weight * residual_m * row;
@@ -98,19 +110,12 @@ class Matching {
   }
 
  private:
-  std::size_t nearestBeam(double bearing_rad) const {
-    const auto& bearings = earlier_.bearings_rad;
-    const auto after = std::lower_bound(bearings.begin(), bearings.end(), bearing_rad);
-    if (after == bearings.begin()) return 0;
-    const bool before_is_nearer = bearing_rad - *(after - 1) < *after - bearing_rad;
-    return static_cast<std::size_t>(after - bearings.begin()) - (before_is_nearer ? 1 : 0);
-  }
-
   const KeyFrame& earlier_;
   const KeyFrame& later_;
-  Eigen::Vector2d calibration_;
   const FrameMatchParams& params_;
-  Pose2 sensor_from_base_;
+  PointMotion to_sensor_;                 // from the base, of the earlier look
+  std::vector<Eigen::Vector2d> walls_m_;  // pieces of the earlier look, corrected by the calibration
+  std::vector<LaterPiece> pieces_;        // that are valid
 };
 
 // To go on with: pieces within the gate. To be believed: pieces within three sigmas.

@@ -8,12 +8,23 @@
 namespace cornerstone {
 namespace {
 
-Eigen::Vector2d endOf(const Beam& beam) {
-  return beam.range_m * Eigen::Vector2d(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad));
+struct Beams {
+  const std::vector<Beam>& beams;
+  std::vector<Eigen::Vector2d> ends_m;  // in the sensor frame
+};
+
+Beams withEnds(const std::vector<Beam>& beams) {
+  Beams all{beams, {}};
+  all.ends_m.reserve(beams.size());
+  for (const Beam& beam : beams)
+    all.ends_m.push_back(beam.range_m *
+                         Eigen::Vector2d(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad)));
+  return all;
 }
 
 // In the sensor frame; not valid where neighbours have no answer or do not lie on one line.
-WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPieceParams& params) {
+WallPiece pieceAt(const Beams& all, std::size_t i, const WallPieceParams& params) {
+  const auto& [beams, ends_m] = all;
   WallPiece piece;
   const auto reach = static_cast<std::size_t>(params.beams_each_side);
   const Beam& middle = beams[i];
@@ -24,9 +35,8 @@ WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPiece
   std::size_t count = 0;
   for (std::size_t k = i - reach; k <= i + reach; ++k) {
     if (!beams[k].hit) continue;
-    const Eigen::Vector2d end_m = endOf(beams[k]);
-    sum += end_m;
-    squares += end_m * end_m.transpose();
+    sum += ends_m[k];
+    squares += ends_m[k] * ends_m[k].transpose();
     ++count;
   }
   if (count < 2 * reach) return piece;  // all but one
@@ -34,7 +44,7 @@ WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPiece
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(squares / static_cast<double>(count) - mean_m * mean_m.transpose());
   const Eigen::Vector2d normal = axes.eigenvectors().col(0);
-  const double incidence = std::abs(normal.dot(endOf(middle).normalized()));
+  const double incidence = std::abs(normal.dot(ends_m[i].normalized()));
   const double scatter_m = std::sqrt(std::max(0.0, axes.eigenvalues()(0)));
   const double along = std::sqrt(std::max(0.0, 1 - incidence * incidence));
   const double bearing_m = params.bearing_sigma_beams * middle.width_rad * middle.range_m;
@@ -48,9 +58,9 @@ WallPiece pieceAt(const std::vector<Beam>& beams, std::size_t i, const WallPiece
   return {mean_m, normal, across_m, by_calibration, true};
 }
 
-WallPiece moved(const Pose2& base_from_sensor, const WallPiece& piece) {
+WallPiece moved(const PointMotion& base_from_sensor, const WallPiece& piece) {
   if (!piece.valid) return {};
-  const Eigen::Matrix2d rotation = base_from_sensor.rotation();
+  const Eigen::Matrix2d& rotation = base_from_sensor.rotation;
   return {base_from_sensor * piece.point_m, rotation * piece.normal, piece.sigma_m,
           rotation * piece.by_calibration, piece.valid};
 }
@@ -83,13 +93,17 @@ KeyFrame makeKeyFrame(const RangeScan& scan, const Pose2& odom_from_base, const 
   frame.base_from_sensor = scan.base_from_sensor;
   frame.correlated_beams = std::max(1.0, scan.correlated_beams);
   frame.calibration_sigma_per_m = scan.calibration_sigma_per_m;
+  const PointMotion base_from_sensor(scan.base_from_sensor);
+  const Beams beams = withEnds(scan.beams);
+  std::vector<double> bearings_rad;
   for (std::size_t i = 0; i < scan.beams.size(); ++i) {
-    frame.bearings_rad.push_back(scan.beams[i].bearing_rad);
-    WallPiece piece = pieceAt(scan.beams, i, params);
+    bearings_rad.push_back(scan.beams[i].bearing_rad);
+    WallPiece piece = pieceAt(beams, i, params);
     // Nothing is asked of a laser's calibration; at 90 degrees its derivative would have no bound.
     if (scan.calibration_sigma_per_m == 0) piece.by_calibration.setZero();
-    frame.pieces.push_back(moved(scan.base_from_sensor, piece));
+    frame.pieces.push_back(moved(base_from_sensor, piece));
   }
+  frame.bearings = BearingIndex(bearings_rad);
   frame.looks.push_back({std::make_shared<const RangeScan>(scan), {}});
   return frame;
 }

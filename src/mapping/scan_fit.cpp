@@ -33,21 +33,23 @@ bool straightAround(const std::vector<Beam>& beams, std::size_t i, const ScanFit
 
 std::vector<BeamEnd> endsOf(const RangeScan& scan, const GridParams& grid, const ScanFitParams& params) {
   std::vector<BeamEnd> ends;
+  const PointMotion base_from_sensor(scan.base_from_sensor);
   for (std::size_t i = 0; i < scan.beams.size(); ++i) {
     const Beam& beam = scan.beams[i];
     if (!beam.hit || beam.range_m > grid.max_range_m || !straightAround(scan.beams, i, params)) continue;
     const Eigen::Vector2d direction(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad));
-    ends.push_back({scan.base_from_sensor * (beam.range_m * direction),
-                    scan.base_from_sensor.rotation() * direction, beam.sigma_m});
+    ends.push_back(
+        {base_from_sensor * (beam.range_m * direction), base_from_sensor.rotation * direction, beam.sigma_m});
   }
   return ends;
 }
 
 SurfaceLines surfacesAround(const std::vector<BeamEnd>& ends, const OccupancyGrid& grid,
                             const Pose2& map_from_base, const ScanFitParams& params) {
+  const PointMotion to_map(map_from_base);
   Eigen::Vector2d low_m = map_from_base.translation(), high_m = low_m;
   for (const BeamEnd& end : ends) {
-    const Eigen::Vector2d end_m = map_from_base * end.in_base_m;
+    const Eigen::Vector2d end_m = to_map * end.in_base_m;
     low_m = low_m.cwiseMin(end_m);
     high_m = high_m.cwiseMax(end_m);
   }
@@ -57,19 +59,20 @@ SurfaceLines surfacesAround(const std::vector<BeamEnd>& ends, const OccupancyGri
 
 std::vector<LineMatch> pairEnds(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces,
                                 const Pose2& pose, const ScanFitParams& params) {
+  const PointMotion to_map(pose);
   std::vector<LineMatch> matches;
   for (const BeamEnd& end : ends) {
-    const auto line = surfaces.nearest(pose * end.in_base_m, params.gate_m);
+    const auto line = surfaces.nearest(to_map * end.in_base_m, params.gate_m);
     if (!line) continue;
-    const double across_m = end.sigma_m * line->normal.dot(pose.rotation() * end.direction_in_base);
+    const double across_m = end.sigma_m * line->normal.dot(to_map.rotation * end.direction_in_base);
     matches.push_back(
         {end.in_base_m, line->point_m, line->normal, std::hypot(across_m, params.surface_sigma_m)});
   }
   return matches;
 }
 
-double whitened(const LineMatch& match, const Pose2& pose) {
-  return match.normal.dot(pose * match.point_in_base_m - match.surface_m) / match.sigma_m;
+double whitened(const LineMatch& match, const PointMotion& to_map) {
+  return match.normal.dot(to_map * match.point_in_base_m - match.surface_m) / match.sigma_m;
 }
 
 // J' W J and J' W r of the distances to the lines; Cauchy's loss by weights. Neighbouring beams share their
@@ -161,14 +164,16 @@ double innovationOf(const Pose2& solution, const Eigen::Matrix3d& information, c
 // Ends on free floor, farther than the gate from every surface.
 int countOnFree(const std::vector<BeamEnd>& ends, const SurfaceLines& surfaces, const Pose2& pose,
                 const ScanFitParams& params) {
+  const PointMotion to_map(pose);
   int count = 0;
-  for (const BeamEnd& end : ends) count += surfaces.isFree(pose * end.in_base_m, params.gate_m);
+  for (const BeamEnd& end : ends) count += surfaces.isFree(to_map * end.in_base_m, params.gate_m);
   return count;
 }
 
 double agreeingShare(const std::vector<LineMatch>& matches, const Pose2& pose) {
+  const PointMotion to_map(pose);
   int agreeing = 0;
-  for (const LineMatch& match : matches) agreeing += std::abs(whitened(match, pose)) < 3;
+  for (const LineMatch& match : matches) agreeing += std::abs(whitened(match, to_map)) < 3;
   return matches.empty() ? 0 : static_cast<double>(agreeing) / static_cast<double>(matches.size());
 }
 

@@ -45,6 +45,7 @@ double reachOf(const Beam& beam, double max_range_m) {
 // The rectangle of cells that the sensor and the ends of its beams span.
 CellWindow windowOf(const RangeScan& scan, const Pose2& map_from_sensor, const OccupancyGrid& grid) {
   const double margin_m = 2 * grid.params().resolution_m;
+  const PointMotion to_map(map_from_sensor);
   Eigen::Vector2d low_m = map_from_sensor.translation(), high_m = low_m;
   for (const Beam& beam : scan.beams) {
     if (!beam.hit) continue;
@@ -52,7 +53,7 @@ CellWindow windowOf(const RangeScan& scan, const Pose2& map_from_sensor, const O
     for (const double side : {-0.5, 0.5}) {
       const double angle_rad = beam.bearing_rad + side * beam.width_rad;
       const Eigen::Vector2d end_m =
-          map_from_sensor * (reach_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)));
+          to_map * (reach_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)));
       low_m = low_m.cwiseMin(end_m);
       high_m = high_m.cwiseMax(end_m);
     }

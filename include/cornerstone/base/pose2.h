@@ -23,6 +23,18 @@ struct Pose2 {
 Pose2 operator*(const Pose2& a_from_b, const Pose2& b_from_c);
 Eigen::Vector2d operator*(const Pose2& a_from_b, const Eigen::Vector2d& point_in_b_m);
 
+// The same for many points: sine and cosine are worked out once.
+struct PointMotion {
+  explicit PointMotion(const Pose2& a_from_b)
+      : rotation(a_from_b.rotation()), translation_m(a_from_b.translation()) {}
+  Eigen::Vector2d operator*(const Eigen::Vector2d& point_in_b_m) const {
+    return rotation * point_in_b_m + translation_m;
+  }
+
+  Eigen::Matrix2d rotation;
+  Eigen::Vector2d translation_m;
+};
+
 // The covariance (x, y, yaw) of a_from_c = a_from_b * b_from_c, both parts independent, first order.
 Eigen::Matrix3d composeCovariance(const Pose2& a_from_b, const Eigen::Matrix3d& covariance_ab,
                                   const Pose2& b_from_c, const Eigen::Matrix3d& covariance_bc);

@@ -6,6 +6,7 @@
 
 #include "cornerstone/base/params.h"
 #include "cornerstone/base/pose2.h"
+#include "cornerstone/mapping/bearing_index.h"
 #include "cornerstone/scan/scan_calibration.h"
 
 namespace cornerstone {
@@ -32,9 +33,9 @@ struct KeyFrame {
   Pose2 base_from_sensor;
   double correlated_beams = 1;
   double calibration_sigma_per_m = 0;
-  std::vector<double> bearings_rad;  // of the pieces, rising
-  std::vector<WallPiece> pieces;     // one a beam
-  std::vector<KeptLook> looks;       // the first is the frame's own
+  BearingIndex bearings;          // of the pieces
+  std::vector<WallPiece> pieces;  // one a beam
+  std::vector<KeptLook> looks;    // the first is the frame's own
 };
 
 struct WallPieceParams {
