@@ -11,7 +11,7 @@ SurfaceLines::SurfaceLines(const OccupancyGrid& grid, const Eigen::Vector2d& low
     : window_(grid.readWindow(low_m, high_m)),
       surface_(grid.readSurface(window_)),
       line_radius_m_(line_radius_m),
-      lines_(surface_.size()) {}
+      line_of_cell_(surface_.size(), -1) {}
 
 std::optional<Cell> SurfaceLines::nearestCell(const Eigen::Vector2d& point_m, double gate_m) const {
   const GridGeometry& at = window_.geometry;
@@ -36,9 +36,12 @@ std::optional<Cell> SurfaceLines::nearestCell(const Eigen::Vector2d& point_m, do
 std::optional<SurfaceLine> SurfaceLines::nearest(const Eigen::Vector2d& point_m, double gate_m) const {
   const std::optional<Cell> cell = nearestCell(point_m, gate_m);
   if (!cell) return std::nullopt;
-  KnownLine& line = lines_[window_.indexOf(*cell)];
-  if (!line.known) line = {true, lineAround(*cell)};
-  return line.line;
+  int& line = line_of_cell_[window_.indexOf(*cell)];
+  if (line < 0) {
+    line = static_cast<int>(lines_.size());
+    lines_.push_back(lineAround(*cell));
+  }
+  return lines_[static_cast<std::size_t>(line)];
 }
 
 bool SurfaceLines::isFree(const Eigen::Vector2d& point_m, double gate_m) const {

@@ -25,14 +25,12 @@ class SurfaceLines {
  private:
   std::optional<Cell> nearestCell(const Eigen::Vector2d& point_m, double gate_m) const;
   std::optional<SurfaceLine> lineAround(Cell cell) const;
-  struct KnownLine {
-    bool known = false;
-    std::optional<SurfaceLine> line;
-  };
   CellWindow window_;
   std::vector<SurfacePoint> surface_;
   double line_radius_m_;
-  mutable std::vector<KnownLine> lines_;  // around each cell asked for: neighbouring ends ask for the same
+  // Around each cell asked for: neighbouring ends ask for the same.
+  mutable std::vector<std::optional<SurfaceLine>> lines_;
+  mutable std::vector<int> line_of_cell_;  // one of lines_; -1: nobody has asked
 };
 
 }  // namespace cornerstone
