@@ -18,26 +18,6 @@ double logit(double probability) {
   return std::log(p / (1 - p));
 }
 
-// Within 2e-6 rad: std::atan2 for every cell would take most of the time of a scan. Polynomial of Hastings,
-// Approximations for Digital Computers (1955), sheet 13.
-float fastAtan2(float y, float x) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const float larger = std::max(ax, ay), z = larger > 0 ? std::min(ax, ay) / larger : 0, z2 = z * z;
-  float angle =
-      ((((-0.0117212F * z2 + 0.05265332F) * z2 - 0.11643287F) * z2 + 0.19354346F) * z2 - 0.33262347F) * z2 +
-      0.99997726F;
-  angle *= z;
-  if (ay > ax) angle = static_cast<float>(M_PI / 2) - angle;
-  if (x < 0) angle = static_cast<float>(M_PI) - angle;
-  return y < 0 ? -angle : angle;
-}
-
-// std::floor, which is a call of a library function on processors without SSE 4.1.
-int floorOf(double value) {
-  const int towards_zero = static_cast<int>(value);
-  return towards_zero - (value < towards_zero);
-}
-
 double reachOf(const Beam& beam, double max_range_m) {
   return std::min(max_range_m, beam.range_m + 2 * (beam.far_m - beam.range_m));
 }
@@ -113,34 +93,20 @@ void ScanWedge::makeBearingTable(const RangeScan& scan) {
 
 void ScanWedge::apply(const LookMotion& motion) {
   if (beams_.empty()) return;
-  const GridGeometry& at = window_.geometry;
-  const double all_free_m = static_cast<double>(free_up_to_m_.of(0, static_cast<int>(beam_at_.size()) - 1));
-  const Eigen::Vector2d ahead = map_from_sensor_.rotation().col(0), left = map_from_sensor_.rotation().col(1);
-  for (int row = 0; row < at.rows; ++row) {
-    Eigen::Vector2d from_sensor_m = at.centreOf({0, row}) - map_from_sensor_.translation();
+  const int table_size = static_cast<int>(beam_at_.size());
+  const float all_free_m = free_up_to_m_.of(0, table_size - 1);
+  CellSectors sectors(window_.geometry, map_from_sensor_, {table_start_rad_, table_step_rad_, table_size});
+  for (int row = 0; row < window_.geometry.rows; ++row) {
     EvidenceCell* cells = &window_.at({0, row});
-    for (int col = 0; col < at.cols; ++col, from_sensor_m.x() += at.resolution_m) {
-      const double squared_m2 = from_sensor_m.squaredNorm();
-      if (squared_m2 > reach_m_ * reach_m_) continue;
-      if (squared_m2 < all_free_m * all_free_m && cells[col] == emptiest_) continue;
-      const auto x_m = static_cast<float>(ahead.dot(from_sensor_m)),
-                 y_m = static_cast<float>(left.dot(from_sensor_m));
-      const Sector sector = sectorOf(std::sqrt(squared_m2), static_cast<double>(fastAtan2(y_m, x_m)));
-      if (sector.first <= sector.last) updateCell({col, row}, cells[col], sector, motion);
+    const CellSectors::Columns columns = sectors.look(row, reach_m_);
+    for (int col = columns.begin; col < columns.end; ++col) {
+      const int first = sectors.first(col), last = sectors.last(col);
+      if (first < 0 || last >= table_size) continue;  // not wholly in view
+      const float range_m = sectors.range_m(col);
+      if (range_m < all_free_m && cells[col] == emptiest_) continue;
+      updateCell({col, row}, cells[col], {first, last, static_cast<double>(range_m)}, motion);
     }
   }
-}
-
-// The part of the table that a cell covers; empty where it is not wholly in view.
-ScanWedge::Sector ScanWedge::sectorOf(double range_m, double bearing_rad) const {
-  const double half_rad = 0.5 * grid_.params().resolution_m / std::max(range_m, grid_.params().resolution_m);
-  const double centre = (bearing_rad - table_start_rad_) / table_step_rad_, half = half_rad / table_step_rad_;
-  const int size = static_cast<int>(beam_at_.size());
-  int first = floorOf(centre - half), last = floorOf(centre + half);
-  if (last < 0 || first >= size) return {};
-  if (last - first <= 2) first = last = floorOf(centre);
-  if (first < 0 || last >= size) return {};
-  return {first, last, range_m};
 }
 
 ScanWedge::Look ScanWedge::lookAt(const Sector& sector, double occupied) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "beam_evidence.h"
+#include "cell_sectors.h"
 #include "range_minimum.h"
 
 namespace cornerstone {
@@ -24,12 +25,11 @@ class ScanWedge {
     double cause = 0;  // of the beam most likely to have measured this cell
     const BeamEvidence* beam = nullptr;
   };
-  struct Sector {  // of the table; empty: first > last
-    int first = 0, last = -1;
+  struct Sector {  // of the table
+    int first = 0, last = 0;
     double range_m = 0;
   };
   void makeBearingTable(const RangeScan& scan);
-  Sector sectorOf(double range_m, double bearing_rad) const;
   Look lookAt(const Sector& sector, double occupied) const;
   void updateCell(Cell cell, EvidenceCell& evidence, const Sector& sector, const LookMotion& motion);
   EvidenceCell updated(EvidenceCell cell, double change, double new_share) const;
