@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "column_surface.h"
 #include "cornerstone/base/errors.h"
@@ -29,30 +30,48 @@ struct ScanInput {
 
 using LevelPixels = std::vector<std::vector<ColumnPixel>>;  // a list for each level
 
-// All points of one image column, each in the levels it lies in. Rays change evenly down a column.
-void collectColumn(const ScanInput& input, int u, LevelPixels& by_level) {
-  const auto& [image, camera, params] = input;
-  for (auto& pixels : by_level) pixels.clear();
+// The lowest and the highest point that any level holds.
+std::pair<double, double> heightsOf(const std::vector<Level>& levels) {
+  std::pair<double, double> heights_m{levels.front().z_min_m, levels.front().z_max_m};
+  for (const Level& level : levels)
+    heights_m = {std::min(heights_m.first, level.z_min_m), std::max(heights_m.second, level.z_max_m)};
+  return heights_m;
+}
+
+// Rays of an image column in the base frame: they change evenly from row to row.
+struct SpatialRays {
+  Eigen::Vector3d first, step;
+};
+
+SpatialRays raysOf(const InverseDepthImage& image, const CameraPose& camera, int u) {
   const double x = (u - image.centre_x_px) / image.focal_px;
   const Eigen::Vector3d down = camera.rotation.col(1) / image.focal_px;
-  const Eigen::Vector3d across =
-      camera.rotation * Eigen::Vector3d(x, 0, 1) - image.centre_y_px * down;  // of row 0
+  return {camera.rotation * Eigen::Vector3d(x, 0, 1) - image.centre_y_px * down, down};
+}
+
+// All points of one image column, each in the levels it lies in.
+void collectColumn(const ScanInput& input, int u, const SpatialRays& rays, LevelPixels& by_level) {
+  const auto& [image, camera, params] = input;
+  for (auto& pixels : by_level) pixels.clear();
+  const auto [lowest, highest] = heightsOf(params.levels);
+  const double first_z = rays.first.z(), step_z = rays.step.z();
   for (int v = 0; v < image.inverse_depth.rows; ++v) {
     const double inverse_depth = image.inverse_depth(v, u);
     if (!(inverse_depth > 0)) continue;
-    const double sigma = image.sigma(v, u), depth_m = 1 / inverse_depth;
-    const Eigen::Vector3d ray = across + v * down;
-    const double planar = ray.head<2>().norm(), range_m = planar * depth_m;
+    const double depth_m = 1 / inverse_depth, ray_z = first_z + v * step_z;
+    const double height_m = camera.height_m + ray_z * depth_m;
+    if (height_m < lowest || height_m > highest) continue;  // floor and ceiling, before more is worked out
+    const Eigen::Vector2d ray = rays.first.head<2>() + v * rays.step.head<2>();
+    const double sigma = image.sigma(v, u), planar = ray.norm(), range_m = planar * depth_m;
     if (planar < 1e-3 || range_m < params.min_range_m) continue;
-    const Eigen::Vector2d point_m = camera.position_m + depth_m * ray.head<2>();
+    const Eigen::Vector2d point_m = camera.position_m + depth_m * ray;
     if (point_m.squaredNorm() < params.body_radius_m * params.body_radius_m) continue;
-    const double height_m = camera.height_m + ray.z() * depth_m;
-    const double by_depth_m = ray.z() * sigma * depth_m * depth_m,
-                 by_tilt_m = params.tilt_sigma_rad * range_m;
+    const double by_depth_m = ray_z * sigma * depth_m * depth_m, by_tilt_m = params.tilt_sigma_rad * range_m;
     const double margin_m = params.height_sigmas * std::sqrt(by_depth_m * by_depth_m + by_tilt_m * by_tilt_m);
+    const double q = inverse_depth / planar, sigma_q = sigma / planar;
     for (std::size_t i = 0; i < params.levels.size(); ++i)
       if (height_m - margin_m >= params.levels[i].z_min_m && height_m + margin_m <= params.levels[i].z_max_m)
-        by_level[i].push_back({inverse_depth / planar, sigma / planar, ray.head<2>()});
+        by_level[i].push_back({q, sigma_q, 1 / (sigma_q * sigma_q), static_cast<double>(v)});
   }
 }
 
@@ -179,11 +198,13 @@ RangeScan scanFromInverseDepth(const InverseDepthImage& image, const Eigen::Isom
   LevelPixels pixels(params.levels.size());
   std::vector<std::vector<Beam>> beams(params.levels.size());
   for (int u = image.inverse_depth.cols - 1; u >= 0; --u) {
-    collectColumn({image, camera, params}, u, pixels);
+    const SpatialRays rays = raysOf(image, camera, u);
+    collectColumn({image, camera, params}, u, rays, pixels);
     const Beam empty = emptyBeam(image, camera, u);
     for (std::size_t i = 0; i < beams.size(); ++i) {
       beams[i].push_back(empty);
-      const auto surface = nearestSurface(pixels[i], image.common_sigma, params);
+      const auto surface =
+          nearestSurface(pixels[i], {rays.first.head<2>(), rays.step.head<2>()}, image.common_sigma, params);
       if (surface) answer(*surface, camera, beams[i].back());
     }
   }

@@ -21,8 +21,8 @@ struct WeightedMean {
   double weight = 0;
   double q = 0;
   double scatter = 0;  // weighted variance of the pixels
+  double row = 0;
   int count = 0;
-  Eigen::Vector2d direction = Eigen::Vector2d::Zero();
 };
 
 WeightedMean meanAround(const std::vector<ColumnPixel>& pixels, double q, double agree_sigmas) {
@@ -30,24 +30,24 @@ WeightedMean meanAround(const std::vector<ColumnPixel>& pixels, double q, double
   double squares = 0;
   for (const ColumnPixel& pixel : pixels) {
     if (std::abs(pixel.q - q) > agree_sigmas * pixel.sigma_q) continue;
-    const double weight = 1 / (pixel.sigma_q * pixel.sigma_q);
-    mean.weight += weight;
-    mean.q += weight * pixel.q;
-    squares += weight * pixel.q * pixel.q;
-    mean.direction += weight * pixel.direction;
+    const double weighted = pixel.weight * pixel.q;
+    mean.weight += pixel.weight;
+    mean.q += weighted;
+    squares += weighted * pixel.q;
+    mean.row += pixel.weight * pixel.row;
     ++mean.count;
   }
   if (mean.count == 0) return mean;
   mean.q /= mean.weight;
   mean.scatter = std::max(0.0, squares / mean.weight - mean.q * mean.q);
-  mean.direction /= mean.weight;
+  mean.row /= mean.weight;
   return mean;
 }
 
 }  // namespace
 
-std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, double common_sigma,
-                                            const ScanParams& params) {
+std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, const ColumnRays& rays,
+                                            double common_sigma, const ScanParams& params) {
   std::sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) { return a.q > b.q; });
   const std::size_t first = firstAgreeing(pixels, params.min_support_px, params.agree_sigmas);
   if (first == pixels.size()) return std::nullopt;
@@ -64,12 +64,13 @@ std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, do
   }
   const double independent = std::max(1.0, mean.count / params.correlated_px);
   const double one = std::max(mean.count / mean.weight, mean.scatter);
-  const double common = common_sigma / mean.direction.norm();
+  const Eigen::Vector2d direction = rays.of(mean.row);
+  const double common = common_sigma / direction.norm();
 
   ColumnSurface surface;
   surface.q = mean.q;
   surface.sigma_q = std::sqrt(one / independent + common * common);
-  surface.direction = mean.direction;
+  surface.direction = direction;
   const std::size_t caution = firstAgreeing(pixels, params.min_caution_px, params.agree_sigmas);
   surface.caution_q = std::max(mean.q, pixels[caution].q);
   // What lies within the surface's own noise is the surface, not something before it.

@@ -8,10 +8,18 @@
 
 namespace cornerstone {
 
+// Where the pixels of an image column look, in the plane of the base frame: evenly down the column. A ray's
+// length is |r_xy|.
+struct ColumnRays {
+  Eigen::Vector2d first, step;
+  Eigen::Vector2d of(double row) const { return first + row * step; }
+};
+
 struct ColumnPixel {
-  double q = 0;               // inverse planar range, 1/m
-  double sigma_q = 0;         // 1/m
-  Eigen::Vector2d direction;  // |r_xy| and its heading in the base frame
+  double q = 0;        // inverse planar range, 1/m
+  double sigma_q = 0;  // 1/m
+  double weight = 0;   // 1 / sigma_q^2
+  double row = 0;
 };
 
 struct ColumnSurface {
@@ -22,7 +30,7 @@ struct ColumnSurface {
 };
 
 // Reorders the pixels. common_sigma: in 1/m along the optical axis.
-std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, double common_sigma,
-                                            const ScanParams& params);
+std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, const ColumnRays& rays,
+                                            double common_sigma, const ScanParams& params);
 
 }  // namespace cornerstone
