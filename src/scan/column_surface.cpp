@@ -6,16 +6,36 @@
 namespace cornerstone {
 namespace {
 
-// First index from which `count` pixels lie within a window of agreement, nearest first; size() when there is
-// none.
-std::size_t firstAgreeing(const std::vector<ColumnPixel>& pixels, int count, double agree_sigmas) {
-  const auto needed = static_cast<std::size_t>(count);
-  for (std::size_t i = 0; i + needed <= pixels.size(); ++i) {
-    const ColumnPixel& last = pixels[i + needed - 1];
-    if (pixels[i].q - last.q <= agree_sigmas * (pixels[i].sigma_q + last.sigma_q)) return i;
+// Nearest first.
+class NearestPixels {
+ public:
+  explicit NearestPixels(std::vector<ColumnPixel>& pixels) : pixels_(pixels) {}
+  const ColumnPixel& operator[](std::size_t i) {
+    if (i >= sorted_) sortTo(i);
+    return pixels_[i];
   }
-  return pixels.size();
-}
+  // First index from which `count` pixels lie within a window of agreement; size() when there is none.
+  std::size_t firstAgreeing(int count, double agree_sigmas) {
+    const auto needed = static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i + needed <= pixels_.size(); ++i) {
+      const ColumnPixel &last = (*this)[i + needed - 1], &first = pixels_[i];
+      if (first.q - last.q <= agree_sigmas * (first.sigma_q + last.sigma_q)) return i;
+    }
+    return pixels_.size();
+  }
+
+ private:
+  // As a rule the nearest few agree: the others need no order.
+  void sortTo(std::size_t i) {
+    const std::size_t to = std::min(pixels_.size(), std::max(i + 1, 2 * sorted_));
+    const auto at = [&](std::size_t k) { return pixels_.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::partial_sort(at(sorted_), at(to), pixels_.end(),
+                      [](const auto& a, const auto& b) { return a.q > b.q; });
+    sorted_ = to;
+  }
+  std::vector<ColumnPixel>& pixels_;
+  std::size_t sorted_ = 0;
+};
 
 struct WeightedMean {
   double weight = 0;
@@ -48,12 +68,12 @@ WeightedMean meanAround(const std::vector<ColumnPixel>& pixels, double q, double
 
 std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, const ColumnRays& rays,
                                             double common_sigma, const ScanParams& params) {
-  std::sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) { return a.q > b.q; });
-  const std::size_t first = firstAgreeing(pixels, params.min_support_px, params.agree_sigmas);
+  NearestPixels nearest(pixels);
+  const std::size_t first = nearest.firstAgreeing(params.min_support_px, params.agree_sigmas);
   if (first == pixels.size()) return std::nullopt;
 
   // The first window is the near tail of the surface's noise: move on to the middle of all that agree.
-  double q = pixels[first + static_cast<std::size_t>(params.min_support_px) / 2].q;
+  double q = nearest[first + static_cast<std::size_t>(params.min_support_px) / 2].q;
   WeightedMean mean;
   constexpr int kMaxMoves = 8;
   for (int i = 0; i < kMaxMoves; ++i) {
@@ -71,8 +91,9 @@ std::optional<ColumnSurface> nearestSurface(std::vector<ColumnPixel>& pixels, co
   surface.q = mean.q;
   surface.sigma_q = std::sqrt(one / independent + common * common);
   surface.direction = direction;
-  const std::size_t caution = firstAgreeing(pixels, params.min_caution_px, params.agree_sigmas);
-  surface.caution_q = std::max(mean.q, pixels[caution].q);
+  const std::size_t caution = nearest.firstAgreeing(params.min_caution_px, params.agree_sigmas);
+  // There may be none where fewer pixels than an obstacle needs are nearly as many.
+  surface.caution_q = caution < pixels.size() ? std::max(mean.q, pixels[caution].q) : mean.q;
   // What lies within the surface's own noise is the surface, not something before it.
   if (surface.caution_q - mean.q <= params.agree_sigmas * std::sqrt(one)) surface.caution_q = mean.q;
   return surface;
