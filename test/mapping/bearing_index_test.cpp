@@ -41,7 +41,7 @@ TEST(BearingIndex, FindsTheNearestBeamFromAnyOtherOn) {
 }
 
 TEST(BearingIndex, FindsNothingAmongNoBeams) {
-  EXPECT_FALSE(BearingIndex({}).nearest({1, 0}, 0));
+  EXPECT_FALSE(BearingIndex(std::vector<double>{}).nearest({1, 0}, 0));
   EXPECT_FALSE(BearingIndex().nearest({1, 0}, 0));
 }
 
