@@ -24,9 +24,8 @@ class RangeMinimum {
   // 0 <= first <= last < size of the table.
   float of(int first, int last) const {
     const int count = last - first + 1;
-    std::size_t level = 0;
-    while ((2 << level) <= count) ++level;
-    const std::vector<float>& values = levels_[level];
+    const int level = 31 - __builtin_clz(static_cast<unsigned>(count));  // the longest stretch that fits in
+    const std::vector<float>& values = levels_[static_cast<std::size_t>(level)];
     return std::min(values[static_cast<std::size_t>(first)],
                     values[static_cast<std::size_t>(last + 1 - (1 << level))]);
   }

@@ -104,7 +104,14 @@ void ScanWedge::apply(const LookMotion& motion) {
       if (first < 0 || last >= table_size) continue;  // not wholly in view
       const float range_m = sectors.range_m(col);
       if (range_m < all_free_m && cells[col] == emptiest_) continue;
-      updateCell({col, row}, cells[col], {first, last, static_cast<double>(range_m)}, motion);
+      // Most cells lie before all of their beams' intervals, or behind them.
+      const float free_m = free_up_to_m_.of(first, last);
+      if (std::isinf(free_m) || range_m > -minus_end_m_.of(first, last)) continue;
+      const Sector sector{first, last, static_cast<double>(range_m)};
+      if (range_m >= free_m)
+        updateCell({col, row}, cells[col], sector, motion);
+      else if (cells[col] != emptiest_)
+        cells[col] = updated(cells[col], -grid_.params().free_step, grid_.newShare(sector.range_m, motion));
     }
   }
 }
@@ -132,15 +139,6 @@ ScanWedge::Look ScanWedge::lookAt(const Sector& sector, double occupied) const {
 
 void ScanWedge::updateCell(Cell cell, EvidenceCell& evidence, const Sector& sector,
                            const LookMotion& motion) {
-  // Most cells lie before all of their beams' intervals, or behind them.
-  const double free_m = static_cast<double>(free_up_to_m_.of(sector.first, sector.last));
-  if (std::isinf(free_m) || sector.range_m > -static_cast<double>(minus_end_m_.of(sector.first, sector.last)))
-    return;
-  if (sector.range_m < free_m) {
-    if (evidence != emptiest_)
-      evidence = updated(evidence, -grid_.params().free_step, grid_.newShare(sector.range_m, motion));
-    return;
-  }
   const double occupied = grid_.scale().occupied(evidence);
   const Look look = lookAt(sector, occupied);
   if (look.beams == 0) return;
