@@ -134,13 +134,16 @@ Mapper::Place Mapper::seek(const RangeScan& scan, const Pose2& odom_from_base, c
   found_map_from_odom_.reset();
   if (place_ != Place::kUnsure && !isDoubtful(fit)) return Place::kAsFitted;
   const Pose2 by_odometry = filter_.pose().map_from_base;
-  const auto sought = [&](double reach_m, double reach_rad) {
-    return relocalise({scan, grid()}, {by_odometry, reach_m, reach_rad}, params_.fit, params);
+  const auto sought = [&](double reach_m, double reach_rad, double agreeing_share) {
+    RelocalisationParams asked = params;
+    asked.min_agreeing_share = agreeing_share;
+    return relocalise({scan, grid()}, {by_odometry, reach_m, reach_rad}, params_.fit, asked);
   };
-  const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad);
+  const Relocalisation near = sought(params.slip_reach_m, params.slip_reach_rad, params.min_agreeing_share);
   // No place agrees by more than 1, so that a good one nearby needs no other to be held against.
   const bool is_best = near.pose && near.agreeing >= kAsGood;
-  const Relocalisation far = is_best ? Relocalisation{} : sought(params.reach_m, M_PI);
+  const Relocalisation far =
+      is_best ? Relocalisation{} : sought(params.reach_m, M_PI, params.min_agreeing_share_far);
   if (near.pose && near.agreeing >= kAsGood * far.agreeing) {
     goOnAt(*near.pose, odom_from_base);
     return Place::kFound;

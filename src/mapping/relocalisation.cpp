@@ -159,6 +159,7 @@ void describe(ParamVisitor& visitor, RelocalisationParams& params) {
   visitor.degrees("slip_reach_deg", params.slip_reach_rad);
   visitor.field("reach_m", params.reach_m);
   visitor.field("min_agreeing_share", params.min_agreeing_share);
+  visitor.field("min_agreeing_share_far", params.min_agreeing_share_far);
   visitor.field("max_rival_share", params.max_rival_share);
 }
 
@@ -169,6 +170,7 @@ void requireValid(const RelocalisationParams& params) {
   requireWithin(params.slip_reach_rad, 0, 3.2, "slip_reach_deg");
   requireWithin(params.reach_m, 0, 10, "reach_m");
   requireWithin(params.min_agreeing_share, 0.3, 1, "min_agreeing_share");
+  requireWithin(params.min_agreeing_share_far, 0.3, 1, "min_agreeing_share_far");
   requireWithin(params.max_rival_share, 0, 1, "max_rival_share");
 }
 

@@ -9,9 +9,9 @@
 // map (relocalisation.h).
 //
 // Behind that a graph of key frames bends the whole way so that all looks agree (frame_graph.h), also where a
-// laser's robot comes back to an old place after a way that drifted (loop_closure.h); when it moves them, the map is drawn anew beside the running one, which goes on until the new one takes its place:
-// then the pose and map_from_odom step by what was corrected. In a loaded map there is no graph: its cells do
-// not move.
+// laser's robot comes back to an old place after a way that drifted (loop_closure.h). When it moves them, the
+// map is drawn anew beside the running one, which goes on until the new one takes its place: then the pose
+// and map_from_odom step by what was corrected. In a loaded map there is no graph: its cells do not move.
 #pragma once
 
 #include <future>

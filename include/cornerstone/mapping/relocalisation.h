@@ -26,6 +26,9 @@ struct RelocalisationParams {
   double slip_reach_rad = 15 * M_PI / 180;
   double reach_m = 0;               // of the search at every heading; 0: none
   double min_agreeing_share = 0.7;  // of the beam ends: on a surface, less those on free floor
+  // The same at every heading: turned by half a turn many places look nearly the same (0.73 in a real
+  // crossing).
+  double min_agreeing_share_far = 0.85;
   // A different pose (half a metre or 15 degrees away) that agrees by more than this share of the best one's:
   // no answer.
   double max_rival_share = 0.8;
