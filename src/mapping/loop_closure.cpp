@@ -9,7 +9,7 @@
 namespace cornerstone {
 namespace {
 
-constexpr std::size_t kFramesOfThen = 60;  // spread over those within reach: a map of them takes 30 ms
+constexpr std::size_t kFramesOfThen = 60;  // spread over those within reach: drawing them is most of a search
 // Of the newest looks' ends, for the map of then to bear out where the robot has itself.
 constexpr double kKnownHere = 0.1;
 constexpr std::size_t kLeastMatches = 10;  // of single frames of then and now
