@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "cornerstone/base/errors.h"
 
@@ -12,7 +13,8 @@ namespace {
 constexpr std::size_t kFramesOfThen = 60;  // spread over those within reach: drawing them is most of a search
 // Of the newest looks' ends, for the map of then to bear out where the robot has itself.
 constexpr double kKnownHere = 0.1;
-constexpr std::size_t kLeastMatches = 10;  // of single frames of then and now
+// Of single frames of then and now: each may be a chance, true loops have had 20 to 500.
+constexpr std::size_t kLeastMatches = 10;
 // Of the bent way's end from where the newest looks were found: the matches decide, in their own accuracy.
 constexpr double kLeft_m = 0.3, kLeft_rad = 2 * M_PI / 180;
 
@@ -46,7 +48,8 @@ OccupancyGrid mapOf(const std::vector<IndexedFrame>& frames, const LoopSearchPar
   return map;
 }
 
-// The looks as the last one's base would see them together.
+// The looks as the last one's base would see them together. Its bearings do not rise: the beams of each look
+// stay side by side, as a scan fit wants them.
 RangeScan wideLook(const std::vector<IndexedFrame>& frames, const ScanCalibration& calibration) {
   RangeScan wide;
   const Pose2 base_from_map = frames.back().frame.map_from_base.inverse();
@@ -179,7 +182,7 @@ LoopSearch findLoop(const OpenLoop& loop, const LoopSearchParams& params) {
   closed.then = then.index;
   closed.now = now.index;
   closed.then_from_now = then.frame.map_from_base.inverse() * map_from_now;
-  search.found = closed;
+  search.found = std::move(closed);
   return search;
 }
 
